@@ -11,11 +11,9 @@
 //! put is exercised below a price that falls from `K` with the time to expiry. Both are compared with a binomial tree
 //! (J. C. Cox, S. A. Ross, M. Rubinstein, J. Financial Econ. 7 (1979), 229-263).
 //!
-//! `cargo run --release --example american_put` prints errors and orders, and draws the exercise price over time to
-//! `target/american_put`.
+//! `cargo run --release --example american_put` prints errors and orders, and the exercise price over time.
 
 use unilateral::nested::KeptSolution;
-use unilateral::plot::Picture;
 use unilateral::prelude::*;
 
 /// Strike, rate and volatility of a put that expires after one year.
@@ -24,8 +22,8 @@ const RATE: f64 = 0.05;
 const VOLATILITY: f64 = 0.2;
 /// The domain in `x` is `(-WIDTH, WIDTH)`: five standard deviations.
 const WIDTH: f64 = 1.0;
-/// Times to expiry at which the exercise price is drawn.
-const DRAWN: usize = 16;
+/// Times to expiry at which the exercise price is printed.
+const PRINTED: usize = 16;
 
 /// The worth of a put at the strike a year before expiry with its first and second derivative by the price, and the exercise
 /// prices at times to expiry.
@@ -65,7 +63,7 @@ pub fn by_tree(steps: usize) -> Worth {
             worth[j] = held.max(payoff(n, j));
         }
         let done = all - n;
-        if done * DRAWN % steps < DRAWN {
+        if done * PRINTED % steps < PRINTED {
             let excess = (0..=n).map(|j| (x(n, j), worth[j] - payoff(n, j)));
             exercise.push([done as f64 * dt, exercise_price(excess.filter(|(_, e)| *e > 1e-12))]);
         }
@@ -103,7 +101,8 @@ pub fn by_steps(scheme: &dyn Scheme<1>, cells: usize, steps: usize) -> Result<Wo
         let u = iteration.solve(scheme)?;
         assert!(u.converged(), "step {k} of {steps}: {}", u.outcome());
         last = u.keep();
-        if let (Some(last), Some(fields), true) = (&last, u.fields(), k * DRAWN % steps < DRAWN) {
+        if let (Some(last), Some(fields), true) = (&last, u.fields(), k * PRINTED % steps < PRINTED)
+        {
             let touching = fields.discrete_contact.cells.iter().flat_map(|&cell| mesh.cell(cell));
             let ends = touching.map(|&v| mesh.vertices()[v as usize][0]);
             let end = ends.fold(-WIDTH, f64::max);
@@ -150,7 +149,7 @@ fn main() -> Result<(), Error> {
                 let found = by_steps(&**scheme, cells, steps)?;
                 let error = (found.at_strike - exact).abs();
                 let order = before.map_or(String::new(), |b| format!("{:.2}", (b / error).log2()));
-                let last = [&found, &tree].map(|w| w.exercise[DRAWN][1]);
+                let last = [&found, &tree].map(|w| w.exercise[PRINTED][1]);
                 print!("{cells:5} {steps:5} {:.5} {error:.2e} ({order:>4})", found.at_strike);
                 print!("  {:.3} ({:.1e})        ", last[0], (last[0] - last[1]).abs());
                 println!(" {:.4}  {:.5}", found.delta, found.gamma);
@@ -161,8 +160,12 @@ fn main() -> Result<(), Error> {
             }
         }
     }
-    let title = "exercise price of an American put";
-    let picture = Picture::of_curves(title, ["time to expiry", "S"], &curves);
-    println!("{}", picture.write("target/american_put".as_ref(), "exercise")?.display());
+    let names: Vec<&str> = curves.iter().map(|(name, _)| *name).collect();
+    println!("\ntime to expiry, exercise price by {}", names.join(", "));
+    for k in 0..=PRINTED {
+        print!("{:.4}", curves[0].1[k][0]);
+        curves.iter().for_each(|(_, prices)| print!(" {:8.3}", prices[k][1]));
+        println!();
+    }
     Ok(())
 }

@@ -11,6 +11,7 @@ const VTK_TYPES: [[u8; 2]; 4] = [[1, 1], [3, 21], [5, 22], [10, 24]];
 
 /// The cells of a mesh, then the facets of its boundary, on points that the cells share or that each has for
 /// itself.
+#[derive(Default)]
 pub(super) struct Grid<const D: usize> {
     pub points: Vec<Point<D>>,
     /// For each point the place of its value among the values of all cells.

@@ -10,23 +10,17 @@ use std::io::{self, BufWriter, Write};
 use std::iter::repeat_n;
 use std::path::{Path, PathBuf};
 
-use super::encode::{Arrays, doubles, integers};
+use super::encode::Array;
 use super::grid::{Grid, values_per_cell};
 use super::groups::{array_names, members};
 use super::pvd::relative_to;
-use crate::arrays::{array_of, map_entries};
+use crate::arrays::map_entries;
 use crate::error::Error;
 use crate::files::{replace, replace_text};
 use crate::input::escaped;
 use crate::instances::compiled;
 use crate::mesh::{BoundaryFacet, Mesh, edge_vertices};
 use crate::real::Point;
-
-/// A function of space that may jump between cells: of the number of a cell and a point in it.
-type InCell<'a, const D: usize> = Box<dyn Fn(usize, &Point<D>) -> f64 + 'a>;
-
-/// Data on facets: their name, the facets as cell and number in the cell, and a value for each.
-type OnFacets<'a> = (&'a str, &'a [(usize, usize)], &'a [f64]);
 
 /// A function on the cells of a mesh with further fields, to be written as a `.vtu` file.
 ///
@@ -39,7 +33,7 @@ type OnFacets<'a> = (&'a str, &'a [(usize, usize)], &'a [f64]);
 /// let mesh = Mesh::<2>::kuhn_box(&square, [1, 1])?;
 /// let u = [0.0, 1.0, 2.0, 0.0, 1.5, 2.0];
 /// let path = std::env::temp_dir().join(format!("unilateral-{}.vtu", std::process::id()));
-/// VtuFile::new(&mesh, &u).function("distance", &|x| x.norm()).write(&path)?;
+/// VtuFile::new(&mesh, &u).function_in_cells("distance", |_, x| x.norm()).write(&path)?;
 /// # let _ = std::fs::remove_file(path);
 /// # Ok(())
 /// # }
@@ -48,19 +42,16 @@ type OnFacets<'a> = (&'a str, &'a [(usize, usize)], &'a [f64]);
 pub struct VtuFile<'a, const D: usize> {
     mesh: &'a Mesh<D>,
     u: &'a [f64],
-    functions: Vec<(&'a str, InCell<'a, D>)>,
-    exact: Option<InCell<'a, D>>,
-    on_cells: Vec<(&'a str, &'a [f64])>,
-    on_facets: Vec<OnFacets<'a>>,
-    vectors: Vec<(&'a str, Vectors<'a, D>)>,
+    grid: Grid<D>,
+    /// Functions and vectors at points.
+    functions: Vec<Array>,
+    vectors: Vec<Array>,
+    /// Numbers on cells and facets of the boundary, with their names, and vectors.
+    on_cells: Vec<(String, Vec<f64>)>,
+    vectors_on_cells: Vec<(&'a str, &'a [Point<D>])>,
     numbers: Vec<(String, f64)>,
-}
-
-/// Vectors, one for each cell or one for each vertex of the mesh.
-#[derive(Clone, Copy)]
-enum Vectors<'a, const D: usize> {
-    OnCells(&'a [Point<D>]),
-    AtVertices(&'a [Point<D>]),
+    /// What is wrong with the first field that does not fit the mesh.
+    fault: Option<String>,
 }
 
 impl<const D: usize> fmt::Debug for VtuFile<'_, D> {
@@ -79,65 +70,115 @@ impl<'a, const D: usize> VtuFile<'a, D> {
     /// (21, 22, 24). Cells share their points if the values of all cells agree at every point up to
     /// rounding; otherwise each cell has its own points, so that jumps are visible.
     pub fn new(mesh: &'a Mesh<D>, u: &'a [f64]) -> Self {
-        Self {
+        let [linear, quadratic] =
+            map_entries([1, 2], |degree| mesh.n_cells() * values_per_cell(D, degree));
+        let mut file = Self {
             mesh,
             u,
+            grid: Grid::default(),
             functions: Vec::new(),
-            exact: None,
-            on_cells: Vec::new(),
-            on_facets: Vec::new(),
             vectors: Vec::new(),
+            on_cells: Vec::new(),
+            vectors_on_cells: Vec::new(),
             numbers: Vec::new(),
+            fault: None,
+        };
+        if u.len() == linear || u.len() == quadratic {
+            file.grid = Grid::new(mesh, u, u.len() / mesh.n_cells());
+        } else {
+            file.fits("u", u.len(), linear);
         }
-    }
-    /// Adds a function of space as point data.
-    pub fn function(self, name: &'a str, f: &'a (dyn Fn(&Point<D>) -> f64 + 'a)) -> Self {
-        self.function_in_cells(name, move |_, x| f(x))
+        file
     }
     /// Adds a function of cell and point as point data. Points that cells share have the value from one of
     /// them.
-    pub fn function_in_cells(
-        mut self,
-        name: &'a str,
-        f: impl Fn(usize, &Point<D>) -> f64 + 'a,
-    ) -> Self {
-        self.functions.push((name, Box::new(f)));
+    pub fn function_in_cells(mut self, name: &str, f: impl Fn(usize, &Point<D>) -> f64) -> Self {
+        let per_cell = self.u.len() / self.mesh.n_cells();
+        let places = self.grid.sources.iter().zip(&self.grid.points);
+        self.functions.push(Array::floats(name, places.map(|(k, x)| f(k / per_cell, x))));
         self
     }
     /// Adds the difference of `u` from a function of cell and point as the point data `error`.
-    pub fn error_from_in_cells(mut self, exact: impl Fn(usize, &Point<D>) -> f64 + 'a) -> Self {
-        self.exact = Some(Box::new(exact));
+    pub fn error_from_in_cells(mut self, exact: impl Fn(usize, &Point<D>) -> f64) -> Self {
+        let per_cell = self.u.len() / self.mesh.n_cells();
+        let places = self.grid.sources.iter().zip(&self.grid.points);
+        let error = places.map(|(&k, x)| self.u[k] - exact(k / per_cell, x));
+        self.functions.push(Array::floats("error", error));
         self
     }
     /// Adds cell data, one value for each cell.
-    pub fn on_cells(mut self, name: &'a str, values: &'a [f64]) -> Self {
-        self.on_cells.push((name, values));
+    pub fn on_cells(mut self, name: &str, values: &[f64]) -> Self {
+        if self.fits(name, values.len(), self.mesh.n_cells()) {
+            self.numbers_of(name)[..values.len()].copy_from_slice(values);
+        }
         self
     }
     /// Adds cell data with one value for each of these facets (cell, number in the cell) of the boundary.
-    pub fn on_facets(
-        mut self,
-        name: &'a str,
-        facets: &'a [(usize, usize)],
-        values: &'a [f64],
-    ) -> Self {
-        self.on_facets.push((name, facets, values));
+    pub fn on_facets(mut self, name: &str, facets: &[(usize, usize)], values: &[f64]) -> Self {
+        if !self.fits(name, values.len(), facets.len()) {
+            return self;
+        }
+        let place = |f: &BoundaryFacet| (f.cell as usize, usize::from(f.local));
+        let (mesh, boundary) = (self.mesh, self.mesh.boundary());
+        for (facet, value) in facets.iter().zip(values) {
+            match boundary.binary_search_by_key(facet, place) {
+                Ok(position) => self.numbers_of(name)[mesh.n_cells() + position] = *value,
+                Err(_) => {
+                    let (cell, local) = facet;
+                    let why = format!(
+                        "field {name}: facet {local} of cell {cell} is not on the boundary of the mesh"
+                    );
+                    self.fault.get_or_insert(why);
+                }
+            }
+        }
         self
     }
     /// Adds cell data, one vector for each cell.
     pub fn vectors_on_cells(mut self, name: &'a str, vectors: &'a [Point<D>]) -> Self {
-        self.vectors.push((name, Vectors::OnCells(vectors)));
+        if self.fits(name, vectors.len(), self.mesh.n_cells()) {
+            self.vectors_on_cells.push((name, vectors));
+        }
         self
     }
     /// Adds point data, one vector for each vertex of the mesh; at midpoints of edges the mean of the ends.
-    pub fn vectors_at_vertices(mut self, name: &'a str, vectors: &'a [Point<D>]) -> Self {
-        self.vectors.push((name, Vectors::AtVertices(vectors)));
+    pub fn vectors_at_vertices(mut self, name: &str, vectors: &[Point<D>]) -> Self {
+        if self.fits(name, vectors.len(), self.mesh.vertices().len()) {
+            let per_cell = self.u.len() / self.mesh.n_cells();
+            let at = |&k: &usize| {
+                let corner = |j: usize| vectors[self.mesh.cell(k / per_cell)[j] as usize];
+                match (k % per_cell).checked_sub(D + 1) {
+                    None => corner(k % per_cell),
+                    Some(edge) => edge_vertices(D)[edge].map(corner).iter().sum::<Point<D>>() / 2.0,
+                }
+            };
+            self.vectors.push(Array::vectors(name, self.grid.sources.iter().map(at)));
+        }
         self
     }
     /// Adds a number to the field data.
     pub fn number(mut self, name: &str, value: f64) -> Self {
         self.numbers.push((name.to_owned(), value));
         self
+    }
+
+    /// Whether a field has the length that the mesh needs; if not, the first such field is the fault of the file.
+    fn fits(&mut self, name: &str, length: usize, needed: usize) -> bool {
+        if length != needed {
+            let why = || format!("field {name} has {length} values, the mesh needs {needed}");
+            self.fault.get_or_insert_with(why);
+        }
+        length == needed
+    }
+    /// The cell data of this name on cells, then facets, not a number where there is no value yet.
+    fn numbers_of(&mut self, name: &str) -> &mut [f64] {
+        let known = self.on_cells.iter().position(|(other, _)| other == name);
+        let place = known.unwrap_or_else(|| {
+            let length = self.mesh.n_cells() + self.mesh.boundary().len();
+            self.on_cells.push((name.to_owned(), vec![f64::NAN; length]));
+            self.on_cells.len() - 1
+        });
+        &mut self.on_cells[place].1
     }
 
     /// Writes the file, and its folder if there is none; it takes the place of an earlier one when it is
@@ -149,7 +190,8 @@ impl<'a, const D: usize> VtuFile<'a, D> {
     /// follows it.
     ///
     /// # Errors
-    /// [`Error::Write`] if a field has not the length that the mesh needs, or the file cannot be written.
+    /// [`Error::Write`] if a field has not the length that the mesh needs, a facet is not on its boundary, or the file
+    /// cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), Error> {
         compiled!(
             const D: fn(&VtuFile<'_, D>, &Path) -> Result<(), Error>
@@ -158,13 +200,94 @@ impl<'a, const D: usize> VtuFile<'a, D> {
     }
     fn write_checked(&self, path: &Path) -> Result<(), Error> {
         let written = replace(path, |draft| {
-            let n = self.check()?;
-            let arrays = self.arrays(&Grid::new(self.mesh, self.u, n))?;
+            if let Some(fault) = &self.fault {
+                return Err(io::Error::new(io::ErrorKind::InvalidInput, fault.clone()));
+            }
             let mut file = BufWriter::new(File::create(draft)?);
-            arrays.write(&mut file)?;
+            self.write_arrays(&mut file)?;
             file.flush()
         });
         written.map(drop)
+    }
+
+    /// Writes the text, the data after an underscore, and the end of the file.
+    ///
+    /// The data stand in the reverse order of the text. meshio 5 searches the text for the array at each offset,
+    /// and gives the array that it finds another offset: an array that stands before the one that is meant would be
+    /// found in its place.
+    fn write_arrays(&self, w: &mut impl Write) -> io::Result<()> {
+        let grid = &self.grid;
+        let u = Array::floats("u", grid.sources.iter().map(|&k| self.u[k]));
+        let points = [Array::vectors("Points", grid.points.iter().copied())];
+        let corners = grid.connectivity.iter().map(|&k| i64::from(k));
+        let cells = [
+            Array::integers("connectivity", corners),
+            Array::integers("offsets", grid.ends.iter().map(|&k| k as i64)),
+            Array::new("UInt8", "types", 1, &grid.types),
+        ];
+        let point_data = self.functions.iter().chain([&u]).chain(&self.vectors).collect();
+        let cell_data = self.cell_data();
+        let sections: [(&str, &str, Vec<&Array>); 4] = [
+            ("PointData", " Scalars=\"u\"", point_data),
+            ("CellData", "", cell_data.iter().collect()),
+            ("Points", "", points.iter().collect()),
+            ("Cells", "", cells.iter().collect()),
+        ];
+        let (n_points, n_cells) = (grid.points.len(), grid.types.len());
+        write!(
+            w,
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" \
+             byte_order=\"LittleEndian\" header_type=\"UInt64\" \
+             compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n<FieldData>\n"
+        )?;
+        for (name, value) in &self.numbers {
+            let name = escaped(name);
+            writeln!(
+                w,
+                "<DataArray type=\"Float64\" Name=\"{name}\" NumberOfTuples=\"1\" \
+                 format=\"ascii\">\n{value}\n</DataArray>"
+            )?;
+        }
+        write!(
+            w,
+            "</FieldData>\n<Piece NumberOfPoints=\"{n_points}\" NumberOfCells=\"{n_cells}\">\n"
+        )?;
+        let arrays: Vec<&Array> = sections.iter().flat_map(|section| &section.2).copied().collect();
+        let mut offset: usize = arrays.iter().map(|array| array.data.len()).sum();
+        for (name, attributes, of_section) in &sections {
+            writeln!(w, "<{name}{attributes}>")?;
+            for array in of_section {
+                offset -= array.data.len();
+                let appended = format!(" format=\"appended\" offset=\"{offset}\"");
+                w.write_all(array.element("DataArray", &appended).as_bytes())?;
+            }
+            writeln!(w, "</{name}>")?;
+        }
+        w.write_all(b"</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_")?;
+        arrays.iter().rev().try_for_each(|array| w.write_all(&array.data))?;
+        w.write_all(b"\n</AppendedData>\n</VTKFile>\n")
+    }
+
+    /// Numbers and vectors on cells and facets, the dimension of each, and the groups of the mesh.
+    fn cell_data(&self) -> Vec<Array> {
+        let (cells, facets) = (self.mesh.n_cells(), self.mesh.boundary().len());
+        let floats =
+            |(name, values): &(String, Vec<f64>)| Array::floats(name, values.iter().copied());
+        let vectors = |(name, vectors): &(&str, &[Point<D>])| {
+            let on_facets = repeat_n(Point::repeat(f64::NAN), facets);
+            Array::vectors(name, vectors.iter().copied().chain(on_facets))
+        };
+        let dimensions = [vec![D as u8; cells], vec![D as u8 - 1; facets]].concat();
+        let of_vectors = self.vectors_on_cells.iter().map(|(name, _)| *name);
+        let taken = self.on_cells.iter().map(|(name, _)| &name[..]).chain(of_vectors);
+        let groups =
+            array_names(self.mesh, taken.chain(["dimension"]).map(str::to_owned).collect());
+        let groups = groups
+            .iter()
+            .map(|(name, group)| Array::new("UInt8", name, 1, &members(self.mesh, group)));
+        let fields = self.on_cells.iter().map(floats);
+        let fields = fields.chain(self.vectors_on_cells.iter().map(vectors));
+        fields.chain([Array::new("UInt8", "dimension", 1, &dimensions)]).chain(groups).collect()
     }
 
     /// Writes a `.pvtu` file that lists the files of the parts of a mesh, each with the fields of this one. Files
@@ -173,24 +296,12 @@ impl<'a, const D: usize> VtuFile<'a, D> {
     /// # Errors
     /// [`Error::Write`].
     pub fn write_list(&self, path: &Path, parts: &[PathBuf]) -> Result<(), Error> {
-        let typed = |kind: &str, name: &str, components: &str| {
-            format!("<PDataArray type=\"{kind}\" Name=\"{}\"{components}/>\n", escaped(name))
-        };
-        let array = |name: &str| typed("Float64", name, "");
-        let vector = |name: &str| typed("Float64", name, " NumberOfComponents=\"3\"");
-        let functions = self.functions.iter().map(|(name, _)| *name);
-        let of_points = functions.chain(self.exact.as_ref().map(|_| "error")).chain(["u"]);
-        let mut of_points: String = of_points.map(array).collect();
-        let mut of_cells: String = self.cell_names().into_iter().map(array).collect();
-        for (name, vectors) in &self.vectors {
-            match vectors {
-                Vectors::OnCells(_) => of_cells += &vector(name),
-                Vectors::AtVertices(_) => of_points += &vector(name),
-            }
-        }
-        let names = ["dimension".to_owned()].into_iter();
-        let names = names.chain(self.groups().into_iter().map(|(name, _)| name));
-        of_cells.extend(names.map(|name| typed("UInt8", &name, "")));
+        let element = |array: &Array| array.element("PDataArray", "");
+        let u = Array::floats("u", std::iter::empty());
+        let points = Array::vectors("Points", std::iter::empty::<Point<D>>());
+        let point_data = self.functions.iter().chain([&u]).chain(&self.vectors);
+        let point_data: String = point_data.map(element).collect();
+        let cell_data: String = self.cell_data().iter().map(element).collect();
         let directory = path.parent().unwrap_or(Path::new(""));
         let source =
             |part: &PathBuf| format!("<Piece Source=\"{}\"/>\n", relative_to(directory, part));
@@ -198,186 +309,11 @@ impl<'a, const D: usize> VtuFile<'a, D> {
         let text = format!(
             "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" \
              byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
-             <PUnstructuredGrid GhostLevel=\"0\">\n<PPointData Scalars=\"u\">\n{of_points}</PPointData>\n\
-             <PCellData>\n{of_cells}</PCellData>\n\
-             <PPoints>\n<PDataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n\
-             {sources}</PUnstructuredGrid>\n</VTKFile>\n"
+             <PUnstructuredGrid GhostLevel=\"0\">\n<PPointData Scalars=\"u\">\n{point_data}</PPointData>\n\
+             <PCellData>\n{cell_data}</PCellData>\n<PPoints>\n{}</PPoints>\n\
+             {sources}</PUnstructuredGrid>\n</VTKFile>\n",
+            element(&points)
         );
         replace_text(path, &text).map(drop)
     }
-
-    /// The names of cell data, each once.
-    fn cell_names(&self) -> Vec<&'a str> {
-        let mut names: Vec<&str> = Vec::new();
-        let on_facets = self.on_facets.iter().map(|(name, ..)| *name);
-        for name in self.on_cells.iter().map(|(name, _)| *name).chain(on_facets) {
-            if !names.contains(&name) {
-                names.push(name);
-            }
-        }
-        names
-    }
-
-    /// The groups of the mesh: the name of the array of each, and its own.
-    fn groups(&self) -> Vec<(String, &str)> {
-        let vectors = self.vectors.iter().map(|(name, _)| *name);
-        let fields = self.cell_names().into_iter().chain(vectors).chain(["dimension"]);
-        array_names(self.mesh, fields.map(str::to_owned).collect())
-    }
-
-    /// Number of values of each cell. Refuses a field whose length does not fit the mesh, and facets that
-    /// are not on its boundary.
-    fn check(&self) -> io::Result<usize> {
-        let refuse = |why: String| Err(io::Error::new(io::ErrorKind::InvalidInput, why));
-        let wrong = |name: &str, length: usize, needed: usize| {
-            refuse(format!("field {name} has {length} values, the mesh needs {needed}"))
-        };
-        let cells = self.mesh.n_cells();
-        let [linear, quadratic] = map_entries([1, 2], |degree| values_per_cell(D, degree));
-        let n = if self.u.len() == cells * quadratic { quadratic } else { linear };
-        if self.u.len() != cells * n {
-            return wrong("u", self.u.len(), cells * n);
-        }
-        if let Some((name, values)) = self.on_cells.iter().find(|(_, v)| v.len() != cells) {
-            return wrong(name, values.len(), cells);
-        }
-        for (name, vectors) in &self.vectors {
-            let (length, needed) = match vectors {
-                Vectors::OnCells(vectors) => (vectors.len(), cells),
-                Vectors::AtVertices(vectors) => (vectors.len(), self.mesh.vertices().len()),
-            };
-            if length != needed {
-                return wrong(name, length, needed);
-            }
-        }
-        for (name, facets, values) in &self.on_facets {
-            if values.len() != facets.len() {
-                return wrong(name, values.len(), facets.len());
-            }
-            if let Some((cell, local)) = facets.iter().find(|place| self.position(place).is_none())
-            {
-                return refuse(format!(
-                    "field {name}: facet {local} of cell {cell} is not on the boundary of the mesh"
-                ));
-            }
-        }
-        Ok(n)
-    }
-
-    /// The position of a facet in the list of the boundary.
-    fn position(&self, &(cell, local): &(usize, usize)) -> Option<usize> {
-        let place = |f: &BoundaryFacet| (f.cell as usize, usize::from(f.local));
-        self.mesh.boundary().binary_search_by_key(&(cell, local), place).ok()
-    }
-
-    /// The text of the file and its arrays.
-    fn arrays(&self, grid: &Grid<D>) -> io::Result<Arrays> {
-        let mut arrays = Arrays::default();
-        let to = &mut arrays;
-        let (n_points, n_cells) = (grid.points.len(), grid.types.len());
-        writeln!(
-            to.text,
-            "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" \
-             byte_order=\"LittleEndian\" header_type=\"UInt64\" \
-             compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>"
-        )?;
-        self.push_field_data(to)?;
-        writeln!(to.text, "<Piece NumberOfPoints=\"{n_points}\" NumberOfCells=\"{n_cells}\">")?;
-        writeln!(to.text, "<PointData Scalars=\"u\">")?;
-        let u: Vec<f64> = grid.sources.iter().map(|&k| self.u[k]).collect();
-        let per_cell = self.u.len() / self.mesh.n_cells();
-        for (name, f) in &self.functions {
-            let places = grid.sources.iter().map(|k| k / per_cell).zip(&grid.points);
-            push_floats(to, name, &mut places.map(|(cell, x)| f(cell, x)))?;
-        }
-        if let Some(exact) = &self.exact {
-            let places = grid.sources.iter().map(|k| k / per_cell).zip(&grid.points);
-            let mut error = u.iter().zip(places).map(|(u, (cell, x))| u - exact(cell, x));
-            push_floats(to, "error", &mut error)?;
-        }
-        push_floats(to, "u", &mut u.iter().copied())?;
-        for (name, vectors) in &self.vectors {
-            let Vectors::AtVertices(vectors) = vectors else { continue };
-            let at = |&k: &usize| {
-                let corner = |j: usize| vectors[self.mesh.cell(k / per_cell)[j] as usize];
-                match (k % per_cell).checked_sub(D + 1) {
-                    None => corner(k % per_cell),
-                    Some(edge) => edge_vertices(D)[edge].map(corner).iter().sum::<Point<D>>() / 2.0,
-                }
-            };
-            push_vectors(to, name, grid.sources.iter().map(at))?;
-        }
-        writeln!(to.text, "</PointData>\n<CellData>")?;
-        self.push_cell_data(to)?;
-        writeln!(to.text, "</CellData>\n<Points>")?;
-        push_vectors(to, "Points", grid.points.iter().copied())?;
-        writeln!(to.text, "</Points>\n<Cells>")?;
-        let corners = integers(&mut grid.connectivity.iter().map(|&k| i64::from(k)));
-        to.push("Int64", "connectivity", 1, &corners)?;
-        let ends = integers(&mut grid.ends.iter().map(|&k| k as i64));
-        to.push("Int64", "offsets", 1, &ends)?;
-        to.push("UInt8", "types", 1, &grid.types)?;
-        writeln!(to.text, "</Cells>\n</Piece>\n</UnstructuredGrid>")?;
-        Ok(arrays)
-    }
-
-    fn push_field_data(&self, to: &mut Arrays) -> io::Result<()> {
-        writeln!(to.text, "<FieldData>")?;
-        for (name, value) in &self.numbers {
-            let name = escaped(name);
-            writeln!(
-                to.text,
-                "<DataArray type=\"Float64\" Name=\"{name}\" NumberOfTuples=\"1\" \
-                 format=\"ascii\">\n{value}\n</DataArray>"
-            )?;
-        }
-        writeln!(to.text, "</FieldData>")
-    }
-
-    fn push_cell_data(&self, to: &mut Arrays) -> io::Result<()> {
-        let (cells, facets) = (self.mesh.n_cells(), self.mesh.boundary().len());
-        for name in self.cell_names() {
-            let mut all = vec![f64::NAN; cells + facets];
-            if let Some((_, values)) = self.on_cells.iter().find(|(other, _)| *other == name) {
-                all[..cells].copy_from_slice(values);
-            }
-            if let Some((_, places, values)) = self.on_facets.iter().find(|f| f.0 == name) {
-                for (place, value) in places.iter().zip(*values) {
-                    let position = self.position(place).expect("facets have been checked");
-                    all[cells + position] = *value;
-                }
-            }
-            push_floats(to, name, &mut all.into_iter())?;
-        }
-        for (name, vectors) in &self.vectors {
-            let Vectors::OnCells(vectors) = vectors else { continue };
-            let on_facets = repeat_n(Point::repeat(f64::NAN), facets);
-            push_vectors(to, name, vectors.iter().copied().chain(on_facets))?;
-        }
-        let dimensions = [vec![D as u8; cells], vec![D as u8 - 1; facets]].concat();
-        to.push("UInt8", "dimension", 1, &dimensions)?;
-        for (name, group) in self.groups() {
-            to.push("UInt8", &escaped(&name), 1, &members(self.mesh, group))?;
-        }
-        Ok(())
-    }
-}
-
-fn push_floats(
-    to: &mut Arrays,
-    name: &str,
-    values: &mut dyn Iterator<Item = f64>,
-) -> io::Result<()> {
-    to.push("Float64", &escaped(name), 1, &doubles(values))
-}
-
-/// Adds an array of vectors with three components, missing ones zero.
-fn push_vectors<const D: usize>(
-    to: &mut Arrays,
-    name: &str,
-    vectors: impl Iterator<Item = Point<D>>,
-) -> io::Result<()> {
-    let mut components =
-        vectors.flat_map(|x| -> [f64; 3] { array_of(|k| if k < D { x[k] } else { 0.0 }) });
-    to.push("Float64", &escaped(name), 3, &doubles(&mut components))
 }

@@ -22,20 +22,15 @@ impl Tick {
         f64::from(self.digit).log10() + f64::from(self.exponent)
     }
 
-    /// The label: a base and a raised exponent, or a plain number.
-    pub fn label(self, plain: bool) -> (String, String) {
+    /// The label: a plain number, or a digit and a power of ten as in `2e-7`.
+    pub fn label(self, plain: bool) -> String {
         let (d, e) = (self.digit, self.exponent);
-        if plain {
-            let zeros = usize::try_from(e).unwrap_or(0);
-            let decimals = usize::try_from(-e).unwrap_or(0);
-            let number = match e >= 0 {
-                true => format!("{d}{}", "0".repeat(zeros)),
-                false => format!("{:.decimals$}", f64::from(d) * 10.0_f64.powi(e)),
-            };
-            return (number, String::new());
+        let zeros = e.unsigned_abs() as usize;
+        match plain {
+            true if e >= 0 => format!("{d}{}", "0".repeat(zeros)),
+            true => format!("{:.zeros$}", f64::from(d) * 10.0_f64.powi(e)),
+            false => format!("{d}e{e}").replace('-', "\u{2212}"),
         }
-        let factor = if d == 1 { String::new() } else { format!("{d}·") };
-        (format!("{factor}10"), e.to_string().replace('-', "\u{2212}"))
     }
 }
 

@@ -27,12 +27,7 @@ pub fn convergence(rows: &[Row]) -> Figure {
     let series = series_of(rows);
     let names = names(&series);
     let scenes = by_scene(&series);
-    let columns = match scenes.len() {
-        0..=3 => 2,
-        4..=16 => 4,
-        _ => 6,
-    };
-    let panels = scenes
+    let panels: Vec<Panel> = scenes
         .iter()
         .flat_map(|(scene, series)| {
             let (size, errors) = match is_adaptive(series) {
@@ -46,7 +41,7 @@ pub fn convergence(rows: &[Row]) -> Figure {
             }
         })
         .collect();
-    Figure { panels, keys: names, columns }
+    Figure::new(panels, names)
 }
 
 /// The most panels of [`convergence`] that a first screen shows whole.
@@ -67,15 +62,11 @@ pub(crate) fn overview(rows: &[Row]) -> [(String, Figure); 2] {
     let first = &all[..all.len().min(MOST_SCENES)];
     let of: Vec<Row> = rows.iter().filter(|row| first.contains(&&*row.scene)).cloned().collect();
     let time = work_precision(&of);
-    let Figure { panels, keys, .. } = convergence(&of);
-    let errors: Vec<&String> = time.panels.iter().map(|panel| &panel.y).collect();
-    let size = match panels.len() <= MOST_PANELS {
-        true => Figure { columns: panels.len().clamp(1, 2), panels, keys },
-        false => {
-            let panels = panels.into_iter().filter(|panel| errors.contains(&&panel.y)).collect();
-            Figure { panels, keys, columns: time.columns }
-        }
-    };
+    let Figure { mut panels, keys, .. } = convergence(&of);
+    if panels.len() > MOST_PANELS {
+        panels.retain(|panel| time.panels.iter().any(|other| other.y == panel.y));
+    }
+    let size = Figure::new(panels, keys);
     let caption = |figure: &Figure| {
         let of = |get: fn(&Panel) -> &str| distinct(figure.panels.iter().map(get)).join(" or ");
         let scenes = match all.len() > first.len() {
@@ -93,13 +84,6 @@ pub fn work_precision(rows: &[Row]) -> Figure {
     let series = series_of(rows);
     let names = names(&series);
     let scenes = by_scene(&series);
-    let columns = match scenes.len() {
-        0 | 1 => 1,
-        2 | 4 => 2,
-        3 | 5 | 6 | 9 => 3,
-        7..=16 => 4,
-        _ => 6,
-    };
     let panels = scenes
         .iter()
         .map(|(scene, series)| {
@@ -111,7 +95,7 @@ pub fn work_precision(rows: &[Row]) -> Figure {
         })
         .flat_map(|panel| with_curves(vec![panel]))
         .collect();
-    Figure { panels, keys: names, columns }
+    Figure::new(panels, names)
 }
 
 /// The names of series, each once: a scheme on several scenes has one.
@@ -130,14 +114,24 @@ fn has_errors(series: &[&Series<'_>]) -> bool {
 }
 
 impl Figure {
+    /// Panels side by side.
+    fn new(panels: Vec<Panel>, keys: Vec<String>) -> Self {
+        let columns = match panels.len() {
+            0 | 1 => 1,
+            2..=8 => 2,
+            _ => 4,
+        };
+        Figure { panels, keys, columns }
+    }
+
     /// The signs that panels show.
     fn signs(&self) -> Vec<Sign> {
         let has_orders = |p: &Panel| p.has_curves() && !p.orders.orders.is_empty();
         let shows = |sign: &Sign, p: &Panel| match sign {
-            Sign::Failed => p.points().any(|point| !point.converged),
+            Sign::Failed => p.points().any(|point| point.y.is_none()),
             Sign::Promised => has_orders(p) && p.orders.are_promised,
             Sign::Compared => has_orders(p) && !p.orders.are_promised,
-            Sign::Limit => !p.limits.is_empty(),
+            Sign::Limit => p.limit.is_some(),
             Sign::Band => p.has_bands(),
         };
         Sign::ALL.into_iter().filter(|sign| self.panels.iter().any(|p| shows(sign, p))).collect()
@@ -145,12 +139,13 @@ impl Figure {
 
     /// The figure as the text of an SVG file.
     pub fn to_svg(&self) -> String {
-        let layout = FigureLayout::new(self.panels.len(), self.columns, &self.keys, &self.signs());
+        let signs = self.signs();
+        let layout = FigureLayout::new(self.panels.len(), self.columns, &self.keys, &signs);
         let mut pen = Pen::new(layout.size, false);
         for (panel, &at) in self.panels.iter().zip(&layout.panels) {
             draw_panel(&mut pen, panel, at);
         }
-        layout.draw_legend(&mut pen);
+        layout.draw_legend(&mut pen, &self.keys, &signs);
         pen.finish()
     }
 }

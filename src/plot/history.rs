@@ -23,19 +23,17 @@ pub(crate) fn history_figure(rows: &[Row], scene: &str, limit: Option<f64>) -> O
     let panel = |label: &str, x: fn(&At) -> f64| {
         let curve = |(key, row): (usize, &&Row)| {
             let history = row.history.as_deref().unwrap_or_default();
-            let point = |(k, at): (usize, &At)| Point {
-                x: x(at),
-                y: at.2.filter(|y| *y > 0.0),
-                bound: None,
-                converged: row.converged() || k + 1 < history.len(),
+            let failed = |k: usize| !row.converged() && k + 1 == history.len();
+            let point = |(k, at): (usize, &At)| {
+                let y = at.2.filter(|y| *y > 0.0 && !failed(k));
+                (y.is_some() || failed(k)).then(|| Point { x: x(at), y, bound: None })
             };
-            let points = history.iter().enumerate().map(point);
-            Curve { key, points: points.filter(|p| p.y.is_some()).collect() }
+            Curve { key, points: history.iter().enumerate().filter_map(point).collect() }
         };
         let curves = finest.iter().enumerate().map(curve);
         let y = "largest part of the certificate";
         let mut panel = Panel::of(&title, (label, y), curves, Orders::default());
-        panel.limits = limit.into_iter().collect();
+        panel.limit = limit;
         panel
     };
     // the axis is logarithmic

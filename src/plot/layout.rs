@@ -31,108 +31,86 @@ impl Sign {
     /// All, in the order of legends.
     pub const ALL: [Self; 5] =
         [Self::Failed, Self::Promised, Self::Compared, Self::Limit, Self::Band];
-}
 
-/// An entry of the legend.
-#[derive(Clone, Debug, PartialEq)]
-enum Entry {
-    Curve(usize, String),
-    Sign(Sign),
-}
-
-impl Entry {
-    fn label(&self) -> &str {
+    fn label(self) -> &'static str {
         match self {
-            Entry::Curve(_, label) => label,
-            Entry::Sign(Sign::Failed) => "did not converge",
-            Entry::Sign(Sign::Promised) => "orders promised by theory",
-            Entry::Sign(Sign::Compared) => "slopes for comparison",
-            Entry::Sign(Sign::Limit) => "limit",
-            Entry::Sign(Sign::Band) => "band: up to the bound on the error",
+            Sign::Failed => "did not converge",
+            Sign::Promised => "orders promised by theory",
+            Sign::Compared => "slopes for comparison",
+            Sign::Limit => "limit",
+            Sign::Band => "band: up to the bound on the error",
         }
     }
-    fn width(&self) -> f64 {
-        SYMBOL + 6.0 + text_width(self.label(), TEXT)
+
+    /// Draws the sign beside its label, to the right of a position.
+    fn draw(self, pen: &mut Pen, (x, y): ScreenPoint) {
+        let (right, low, high) = (x + SYMBOL, y + 6.0, y - 6.0);
+        match self {
+            Sign::Failed => draw_failed(pen, (x + SYMBOL / 2.0, y)),
+            Sign::Promised | Sign::Compared => {
+                let (tip, corner, end) = ((x + 4.0, low), (right - 4.0, low), (right - 4.0, high));
+                pen.line(tip, corner, 0.8, GREY);
+                pen.line(corner, end, 0.8, GREY);
+                draw_slope(pen, tip, end, self == Sign::Promised);
+            }
+            Sign::Band => {
+                pen.fill_faintly(&[(x, low), (right, low), (right, high), (x, high)], INK)
+            }
+            Sign::Limit => draw_limit(pen, (x, y), (right, y)),
+        }
     }
 }
 
-/// Positions of panels and legend.
+/// Positions of panels and of the entries of the legend.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct FigureLayout {
     /// Width and height of the figure.
     pub size: (f64, f64),
     /// Upper left corners of the panels.
     pub panels: Vec<ScreenPoint>,
-    legend: Vec<(ScreenPoint, Entry)>,
+    legend: Vec<ScreenPoint>,
 }
 
 impl FigureLayout {
-    /// Panels in a grid, the legend below them in as many lines as it takes.
+    /// Panels in a grid, the legend below them in columns of equal width.
     pub fn new(panels: usize, columns: usize, keys: &[String], signs: &[Sign]) -> Self {
         let rows = panels.max(1).div_ceil(columns);
         let places = (0..panels).map(|i| {
             (MARGIN + (i % columns) as f64 * PANEL.0, MARGIN + (i / columns) as f64 * PANEL.1)
         });
-
-        let mut entries: Vec<Entry> =
-            keys.iter().enumerate().map(|(k, key)| Entry::Curve(k, key.clone())).collect();
-        entries.extend(signs.iter().copied().map(Entry::Sign));
+        let labels = keys.iter().map(|key| &key[..]).chain(signs.iter().map(|sign| sign.label()));
+        let widest = labels.map(|label| text_width(label, TEXT)).fold(0.0, f64::max);
+        let entry = SYMBOL + 6.0 + widest + GAP;
         // an entry of the legend may be wider than the panels
-        let widest = entries.iter().map(Entry::width).fold(columns as f64 * PANEL.0, f64::max);
-        let width = 2.0 * MARGIN + widest;
-        let mut lines: Vec<Vec<Entry>> = vec![Vec::new()];
-        let room = width - 4.0 * MARGIN;
-        let line_width = |line: &[Entry]| line.iter().map(|e| e.width() + GAP).sum::<f64>() - GAP;
-        for entry in entries {
-            let last = lines.len() - 1;
-            if !lines[last].is_empty() && line_width(&lines[last]) + GAP + entry.width() > room {
-                lines.push(vec![entry]);
-            } else {
-                lines[last].push(entry);
-            }
+        let width = 2.0 * MARGIN + entry.max(columns as f64 * PANEL.0);
+        let entries = keys.len() + signs.len();
+        let of_line = (((width - 2.0 * MARGIN) / entry) as usize).clamp(1, entries.max(1));
+        let left = (width - of_line as f64 * entry + GAP) / 2.0;
+        let top = MARGIN + rows as f64 * PANEL.1 + LINE / 2.0;
+        let place =
+            |k: usize| (left + (k % of_line) as f64 * entry, top + (k / of_line) as f64 * LINE);
+        let bottom = top + entries.max(1).div_ceil(of_line) as f64 * LINE;
+        FigureLayout {
+            size: (width, bottom - LINE / 2.0 + MARGIN),
+            panels: places.collect(),
+            legend: (0..entries).map(place).collect(),
         }
-        let mut legend = Vec::new();
-        let mut y = MARGIN + rows as f64 * PANEL.1 + LINE / 2.0;
-        for line in lines {
-            let mut x = (width - line_width(&line)) / 2.0;
-            for entry in line {
-                let step = entry.width() + GAP;
-                legend.push(((x, y), entry));
-                x += step;
-            }
-            y += LINE;
-        }
-        FigureLayout { size: (width, y - LINE / 2.0 + MARGIN), panels: places.collect(), legend }
     }
 
-    /// Draws the legend.
-    pub fn draw_legend(&self, pen: &mut Pen) {
-        for ((x, y), entry) in &self.legend {
-            let middle = (x + SYMBOL / 2.0, *y);
-            match entry {
-                Entry::Curve(key, _) => {
-                    segment(pen, *key, (*x, *y), (x + SYMBOL, *y));
-                    draw_mark(pen, *key, middle, 1.0);
-                }
-                Entry::Sign(Sign::Failed) => draw_failed(pen, middle),
-                Entry::Sign(sign @ (Sign::Promised | Sign::Compared)) => {
-                    let (tip, right) = ((x + 4.0, y + 6.0), x + SYMBOL - 4.0);
-                    pen.line(tip, (right, y + 6.0), 0.8, GREY);
-                    pen.line((right, y + 6.0), (right, y - 6.0), 0.8, GREY);
-                    draw_slope(pen, tip, (right, y - 6.0), *sign == Sign::Promised);
-                }
-                Entry::Sign(Sign::Band) => {
-                    let corners = [
-                        (*x, y + 6.0),
-                        (x + SYMBOL, y + 6.0),
-                        (x + SYMBOL, y - 6.0),
-                        (*x, y - 6.0),
-                    ];
-                    pen.fill_faintly(&corners, INK);
-                }
-                Entry::Sign(Sign::Limit) => draw_limit(pen, (*x, *y), (x + SYMBOL, *y)),
-            }
-            pen.text(entry.label(), (x + SYMBOL + 6.0, *y), TEXT, INK, Align::Left);
+    /// Draws the legend of these curves and signs.
+    pub fn draw_legend(&self, pen: &mut Pen, keys: &[String], signs: &[Sign]) {
+        let (of_curves, of_signs) = self.legend.split_at(keys.len());
+        let write = |pen: &mut Pen, label: &str, (x, y): ScreenPoint| {
+            pen.text(label, (x + SYMBOL + 6.0, y), TEXT, INK, Align::Left);
+        };
+        for (key, (name, &(x, y))) in keys.iter().zip(of_curves).enumerate() {
+            segment(pen, key, (x, y), (x + SYMBOL, y));
+            draw_mark(pen, key, (x + SYMBOL / 2.0, y), 1.0);
+            write(pen, name, (x, y));
+        }
+        for (sign, &at) in signs.iter().zip(of_signs) {
+            sign.draw(pen, at);
+            write(pen, sign.label(), at);
         }
     }
 }

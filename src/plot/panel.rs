@@ -4,7 +4,7 @@ use super::axis::{LogAxis, Tick};
 use super::layout::PANEL;
 use super::pen::{Align, Pen, ScreenPoint};
 use super::series::{Panel, Point};
-use super::slopes::Slopes;
+use super::slopes::draw_slopes;
 use super::style::{GRID, INK, colour, draw_failed, draw_limit, draw_mark, segment};
 
 /// Room around the data for title, labels and ticks.
@@ -15,8 +15,7 @@ const BOTTOM: f64 = 48.0;
 /// Width and height of the area of the data.
 const SIZE: (f64, f64) = (PANEL.0 - LEFT - RIGHT, PANEL.1 - TOP - BOTTOM);
 
-/// Width of the cross of a failure, and distance of its centre from an edge.
-const CROSS: f64 = 17.0;
+/// Distance of the cross of a failure from the upper edge.
 const EDGE: f64 = 10.0;
 
 const TITLE: f64 = 16.0;
@@ -28,128 +27,67 @@ struct Frame<'a> {
     panel: &'a Panel,
     x: LogAxis,
     y: LogAxis,
-    slopes: Option<Slopes>,
+    /// The upper left corner of the area of the data.
+    origin: ScreenPoint,
 }
 
-impl<'a> Frame<'a> {
-    /// Axes around the data, with room for the reference slopes.
-    fn new(panel: &'a Panel) -> Self {
-        let x = LogAxis::over(&panel.points().map(|p| p.x).collect::<Vec<_>>());
-        let y = LogAxis::over(&panel.errors());
-        let mut frame = Frame { panel, x, y, slopes: None };
-        if panel.has_curves() && !panel.orders.orders.is_empty() {
-            for _ in 0..8 {
-                let axes = (&frame.x, &frame.y);
-                frame.slopes = Slopes::place(&panel.orders, axes, SIZE, &frame.occupied());
-                if frame.slopes.is_some() {
-                    return frame;
-                }
-                frame.y.low -= 0.08 * (frame.y.high - frame.y.low);
-            }
-            // Nowhere to put them: better none than on top of the data.
-            frame.y = y;
-        }
-        frame
+impl Frame<'_> {
+    /// The height at which a value of the second axis stands.
+    fn height(&self, y: f64) -> f64 {
+        self.origin.1 + (1.0 - self.y.position(y.log10())) * SIZE.1
     }
 
-    /// How far a value of the second axis is below the upper edge of the area.
-    fn depth(&self, y: f64) -> f64 {
-        (1.0 - self.y.position(y.log10())) * SIZE.1
-    }
-
-    /// A point relative to the upper left corner of the area. One with an error beyond the axis
-    /// stands at the edge it is beyond, one without an error at the upper edge, where failures are
-    /// looked for.
+    /// Where a point stands: a run that failed at the upper edge.
     fn place(&self, point: &Point) -> ScreenPoint {
-        let x = self.x.position(point.x.log10()) * SIZE.0;
-        let y = match point.y.map(|y| self.depth(y)) {
-            Some(y) if y > SIZE.1 => SIZE.1 - EDGE,
-            Some(y) if y >= 0.0 => y,
-            _ => EDGE,
-        };
-        (x, y)
-    }
-
-    /// Places of all points, curve by curve. Failures without an error are moved down until they do
-    /// not hide another failure.
-    fn places(&self) -> Vec<Vec<ScreenPoint>> {
-        let failed = |p: &Point| !p.converged && p.y.is_some();
-        let mut taken: Vec<ScreenPoint> =
-            self.panel.points().filter(failed).map(|p| self.place(&p)).collect();
-        let mut place = |point: &Point| {
-            let (x, mut y) = self.place(point);
-            if point.y.is_none() {
-                let hides =
-                    |t: &ScreenPoint, y: f64| (t.0 - x).abs() < CROSS && (t.1 - y).abs() < CROSS;
-                while y < SIZE.1 - EDGE && taken.iter().any(|t| hides(t, y)) {
-                    y += 1.0;
-                }
-                taken.push((x, y));
-            }
-            (x, y)
-        };
-        self.panel.curves.iter().map(|c| c.points.iter().map(&mut place).collect()).collect()
-    }
-
-    /// Pixels that marks and lines occupy.
-    fn occupied(&self) -> Vec<ScreenPoint> {
-        let mut occupied = Vec::new();
-        for places in self.places() {
-            occupied.extend(&places);
-            for pair in places.windows(2) {
-                occupied.extend((1..16).map(|i| {
-                    let t = f64::from(i) / 16.0;
-                    (
-                        pair[0].0 + t * (pair[1].0 - pair[0].0),
-                        pair[0].1 + t * (pair[1].1 - pair[0].1),
-                    )
-                }));
-            }
-        }
-        occupied
+        let x = self.origin.0 + self.x.position(point.x.log10()) * SIZE.0;
+        (x, point.y.map_or(self.origin.1 + EDGE, |y| self.height(y)))
     }
 }
 
 /// Draws a panel with its upper left corner at a position.
 pub(crate) fn draw_panel(pen: &mut Pen, panel: &Panel, at: ScreenPoint) {
-    let frame = Frame::new(panel);
-    let origin = (at.0 + LEFT, at.1 + TOP);
-    draw_frame(pen, &frame, at, origin);
+    let frame = Frame {
+        panel,
+        x: LogAxis::over(&panel.points().map(|p| p.x).collect::<Vec<_>>()),
+        y: LogAxis::over(&panel.errors()),
+        origin: (at.0 + LEFT, at.1 + TOP),
+    };
+    draw_frame(pen, &frame, at);
     if panel.has_curves() {
-        draw_curves(pen, &frame, origin);
+        draw_curves(pen, &frame);
     }
 }
 
-/// Title, labels, ticks, slopes and limits; or why there are no curves.
-fn draw_frame(pen: &mut Pen, frame: &Frame, at: ScreenPoint, origin: ScreenPoint) {
-    let panel = frame.panel;
-    let middle = (origin.0 + SIZE.0 / 2.0, origin.1 + SIZE.1 / 2.0);
+/// Title, labels, ticks, slopes and limit; or why there are no curves.
+fn draw_frame(pen: &mut Pen, frame: &Frame<'_>, at: ScreenPoint) {
+    let (panel, (left, top)) = (frame.panel, frame.origin);
+    let (right, bottom) = (left + SIZE.0, top + SIZE.1);
+    let middle = (left + SIZE.0 / 2.0, top + SIZE.1 / 2.0);
     pen.text(&panel.title, (middle.0, at.1 + TOP / 2.0 + 1.0), TITLE, INK, Align::Centre);
     pen.text(&panel.x, (middle.0, at.1 + PANEL.1 - 14.0), LABEL, INK, Align::Centre);
     pen.text(&panel.y, (at.0 + 12.0, middle.1), LABEL, INK, Align::Upwards);
-    let why = match panel.has_errors() {
-        _ if panel.has_curves() => None,
-        true => Some("one level: no curve"),
-        false => Some("no exact solution: no errors"),
-    };
-    if let Some(why) = why {
-        pen.text(why, middle, LABEL, INK, Align::Centre);
-    } else {
-        draw_ticks(pen, frame, origin);
-        for limit in &panel.limits {
-            let y = origin.1 + frame.depth(*limit);
-            draw_limit(pen, (origin.0, y), (origin.0 + SIZE.0, y));
+    if panel.has_curves() {
+        draw_ticks(pen, frame);
+        if let Some(limit) = panel.limit {
+            let y = frame.height(limit);
+            draw_limit(pen, (left, y), (right, y));
         }
+        draw_slopes(pen, &panel.orders, (&frame.x, &frame.y), SIZE, frame.origin);
+    } else {
+        let why = match panel.has_errors() {
+            true => "one level: no curve",
+            // a point without an error is a run that failed
+            false if panel.points().next().is_some() => "no run converged",
+            false => "no exact solution: no errors",
+        };
+        pen.text(why, middle, LABEL, INK, Align::Centre);
     }
-    if let Some(slopes) = &frame.slopes {
-        slopes.draw(pen, origin);
-    }
-    let (right, bottom) = (origin.0 + SIZE.0, origin.1 + SIZE.1);
-    pen.outline(&[origin, (right, origin.1), (right, bottom), (origin.0, bottom)], 1.0, INK);
+    pen.outline(&[(left, top), (right, top), (right, bottom), (left, bottom)], 1.0, INK);
 }
 
 /// Lines behind the data, ticks and their labels.
-fn draw_ticks(pen: &mut Pen, frame: &Frame, (left, top): ScreenPoint) {
+fn draw_ticks(pen: &mut Pen, frame: &Frame<'_>) {
+    let (left, top) = frame.origin;
     let (right, bottom) = (left + SIZE.0, top + SIZE.1);
     let length = |tick: Tick| if tick.digit == 1 { 5.0 } else { 2.5 };
     for tick in frame.x.ticks(6) {
@@ -159,8 +97,8 @@ fn draw_ticks(pen: &mut Pen, frame: &Frame, (left, top): ScreenPoint) {
         }
         pen.line((x, bottom), (x, bottom - length(tick)), 0.8, INK);
         if tick.labelled {
-            let (base, exponent) = tick.label(frame.x.is_plain());
-            pen.power(&base, &exponent, (x, bottom + 12.0), TICK, INK, Align::Centre);
+            let label = tick.label(frame.x.is_plain());
+            pen.text(&label, (x, bottom + 12.0), TICK, INK, Align::Centre);
         }
     }
     for tick in frame.y.ticks(8) {
@@ -170,52 +108,37 @@ fn draw_ticks(pen: &mut Pen, frame: &Frame, (left, top): ScreenPoint) {
         }
         pen.line((left, y), (left + length(tick), y), 0.8, INK);
         if tick.labelled {
-            let (base, exponent) = tick.label(frame.y.is_plain());
-            pen.power(&base, &exponent, (left - 6.0, y), TICK, INK, Align::Right);
+            let label = tick.label(frame.y.is_plain());
+            pen.text(&label, (left - 6.0, y), TICK, INK, Align::Right);
         }
     }
 }
 
-/// Bands first, then lines, then marks, then failures: what matters most is on top. A line ends where a run
-/// did not converge.
-fn draw_curves(pen: &mut Pen, frame: &Frame, origin: ScreenPoint) {
-    let places: Vec<Vec<ScreenPoint>> = frame
-        .places()
-        .into_iter()
-        .map(|c| c.into_iter().map(|(x, y)| (origin.0 + x, origin.1 + y)).collect())
-        .collect();
-    let curves = || frame.panel.curves.iter().zip(&places);
-    for (curve, places) in curves() {
-        for (points, ends) in curve.points.windows(2).zip(places.windows(2)) {
-            let bound = |k: usize| {
-                let y = points[k].bound.filter(|_| points[k].y.is_some())?;
-                Some((ends[k].0, origin.1 + frame.depth(y).clamp(0.0, SIZE.1)))
-            };
-            if let (Some(left), Some(right)) = (bound(0), bound(1)) {
-                pen.fill_faintly(&[ends[0], ends[1], right, left], colour(curve.key));
-            }
+/// Bands first, then lines, then marks, then failures: what matters most is on top. A line ends where a run failed.
+fn draw_curves(pen: &mut Pen, frame: &Frame<'_>) {
+    let curves = &frame.panel.curves;
+    let pairs = || curves.iter().flat_map(|c| c.points.windows(2).map(|ends| (c.key, ends)));
+    for (key, ends) in pairs() {
+        if let [Some(left), Some(right)] = [ends[0].bound, ends[1].bound] {
+            let ends = [frame.place(&ends[0]), frame.place(&ends[1])];
+            let corners = [(ends[1].0, frame.height(right)), (ends[0].0, frame.height(left))];
+            pen.fill_faintly(&[ends[0], ends[1], corners[0], corners[1]], colour(key));
         }
     }
-    for (curve, places) in curves() {
-        for (points, ends) in curve.points.windows(2).zip(places.windows(2)) {
-            if points[0].converged && points[1].converged {
-                segment(pen, curve.key, ends[0], ends[1]);
-            }
+    for (key, ends) in pairs() {
+        if ends.iter().all(|point| point.y.is_some()) {
+            segment(pen, key, frame.place(&ends[0]), frame.place(&ends[1]));
         }
     }
-    for converged in [true, false] {
-        for (curve, places) in curves() {
-            for (point, &at) in curve.points.iter().zip(places) {
-                if point.converged != converged {
-                    continue;
-                }
-                if converged {
-                    draw_mark(pen, curve.key, at, 1.0);
-                } else {
-                    // the cross marks the failure, the small mark on it the scheme
+    for is_failed in [false, true] {
+        for curve in curves {
+            for point in curve.points.iter().filter(|point| point.y.is_none() == is_failed) {
+                let at = frame.place(point);
+                // the cross marks the failure, the small mark on it the scheme
+                if is_failed {
                     draw_failed(pen, at);
-                    draw_mark(pen, curve.key, at, 0.7);
                 }
+                draw_mark(pen, curve.key, at, if is_failed { 0.7 } else { 1.0 });
             }
         }
     }

@@ -19,19 +19,9 @@ const FAINT: f64 = 0.12;
 /// Coordinates in the file are whole numbers of this part of a unit.
 const PARTS: f64 = 8.0;
 
-/// The size of an exponent over that of its base.
-const RAISED: f64 = 0.75;
-
-/// About the width of a text: typefaces differ by a tenth.
+/// About the width of a text: typefaces and letters differ.
 pub(crate) fn text_width(text: &str, size: f64) -> f64 {
-    let width = |c: char| match c {
-        'i' | 'j' | 'l' | '.' | ',' | ':' | ';' | '\'' | '|' | '!' => 0.28,
-        'f' | 't' | 'r' | ' ' | '(' | ')' | '[' | ']' | '-' | '/' => 0.36,
-        'm' | 'w' | 'M' | 'W' | '@' | '%' => 0.92,
-        'A'..='Z' => 0.72,
-        _ => 0.58,
-    };
-    size * text.chars().map(width).sum::<f64>()
+    0.58 * size * text.chars().count() as f64
 }
 
 /// How a text is aligned at its position.
@@ -130,19 +120,6 @@ impl Pen {
 
     /// Text, its middle at the height of its position.
     pub fn text(&mut self, text: &str, at: ScreenPoint, size: f64, colour: Colour, align: Align) {
-        self.power(text, "", at, size, colour, align);
-    }
-
-    /// Text with a raised exponent, if that is not empty.
-    pub fn power(
-        &mut self,
-        base: &str,
-        exponent: &str,
-        at: ScreenPoint,
-        size: f64,
-        colour: Colour,
-        align: Align,
-    ) {
         self.close_path();
         let (x, y) = pixel(at);
         let anchor = match align {
@@ -155,20 +132,11 @@ impl Pen {
             _ => String::new(),
         };
         let (size, colour) = (PARTS * size, colour_text(colour));
-        let raised = match exponent {
-            "" => String::new(),
-            _ => format!(
-                "<tspan dy=\"{:.0}\" font-size=\"{:.0}\">{}</tspan>",
-                -0.36 * size,
-                RAISED * size,
-                escaped(exponent)
-            ),
-        };
         self.text += &format!(
             "<text x=\"{x}\" y=\"{y}\" dy=\"{:.0}\" font-size=\"{size:.0}\" text-anchor=\"{anchor}\" \
-             fill=\"{colour}\"{turn}>{}{raised}</text>\n",
+             fill=\"{colour}\"{turn}>{}</text>\n",
             0.35 * size,
-            escaped(base)
+            escaped(text)
         );
     }
 

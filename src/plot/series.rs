@@ -63,7 +63,7 @@ impl Quantity {
             Quantity::H1 => row.error.is_energy_h1(),
             _ => false,
         };
-        row.bound.discrete.filter(|x| is_bounded && row.converged() && *x > 0.0)
+        row.bound.discrete.filter(|x| is_bounded && *x > 0.0)
     }
 
     /// The order that theory promises for this quantity. The broken energy norm and the broken H1
@@ -100,20 +100,20 @@ pub(crate) struct Orders {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Point {
     pub x: f64,
-    /// None: there is no error, or none that can be shown.
+    /// None: the run failed.
     pub y: Option<f64>,
     /// The bound on the error, the upper end of the band.
     pub bound: Option<f64>,
-    pub converged: bool,
 }
 
 impl Point {
-    /// The point of a row; none for a converged run without an error. A failed run always has a
-    /// point.
+    /// The point of a row; none for a converged run without an error.
     fn of(row: &Row, x: Quantity, y: Quantity) -> Option<Self> {
-        let point =
-            Point { x: x.of(row)?, y: y.of(row), bound: y.bound(row), converged: row.converged() };
-        (point.y.is_some() || !point.converged).then_some(point)
+        let x = x.of(row)?;
+        match row.converged() {
+            true => Some(Point { x, y: Some(y.of(row)?), bound: y.bound(row) }),
+            false => Some(Point { x, y: None, bound: None }),
+        }
     }
 }
 
@@ -136,8 +136,8 @@ pub(crate) struct Panel {
     pub curves: Vec<Curve>,
     /// Orders to compare with.
     pub orders: Orders,
-    /// Limits of the second number.
-    pub limits: Vec<f64>,
+    /// A limit of the second number.
+    pub limit: Option<f64>,
 }
 
 impl Panel {
@@ -175,7 +175,7 @@ impl Panel {
     ) -> Self {
         let curves = curves.filter(|c| !c.points.is_empty()).collect();
         let (title, x, y) = (title.to_owned(), x.to_owned(), y.to_owned());
-        Panel { title, x, y, curves, orders, limits: Vec::new() }
+        Panel { title, x, y, curves, orders, limit: None }
     }
 
     /// Whether some run has an error.
@@ -199,19 +199,9 @@ impl Panel {
         self.curves.iter().flat_map(|c| c.points.iter().copied())
     }
 
-    /// The numbers the axis has to show. A run that failed may have any error at all: one far off
-    /// would squeeze the others into a line, and goes to the edge instead.
+    /// The numbers that the second axis shows.
     pub fn errors(&self) -> Vec<f64> {
-        let converged = || self.points().filter(|p| p.converged).filter_map(|p| p.y);
-        let low = converged().fold(f64::INFINITY, f64::min) / 100.0;
-        let high = converged().fold(0.0, f64::max) * 100.0;
-        let none_converged = converged().next().is_none();
-        self.points()
-            .filter_map(|p| p.y)
-            .filter(|y| none_converged || (low..=high).contains(y))
-            .chain(self.limits.iter().copied())
-            .chain(self.points().filter_map(|p| p.bound))
-            .collect()
+        self.points().flat_map(|p| [p.y, p.bound]).flatten().chain(self.limit).collect()
     }
 }
 

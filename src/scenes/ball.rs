@@ -119,11 +119,7 @@ fn over<const D: usize>(
     let exact = Exact::new(value, gradient)
         .with_multiplier(multiplier)
         .with_contact(move |x| a - x.norm(), free_boundary::sphere(a, side));
-    Scene {
-        name: name.into(),
-        summary,
-        domain,
-        problem: problem.obstacle_below(move |x: &Point<D>| dome.height(x.norm())).solved_by(exact),
-        regularity: Regularity::new(2.5),
-    }
+    let problem =
+        problem.obstacle_below(move |x: &Point<D>| dome.height(x.norm())).solved_by(exact);
+    Scene::new(name, domain, problem).summary(summary).regularity(Regularity::new(2.5))
 }

@@ -38,16 +38,13 @@ pub fn bilateral_1d() -> Scene<1> {
     let exact = Exact::new(value, gradient)
         .with_multiplier(move |x| if inside(x[0]) >= 0.0 { -load(x[0]) } else { 0.0 })
         .with_contact(move |x| inside(x[0]), [-0.75, -0.25, 0.25, 0.75].map(|x| [x].into()).into());
-    Scene {
-        name: "bilateral-1d".into(),
-        summary: "a string between floor and ceiling, in contact with both",
-        domain: BoxDomain::centred(1.0).into(),
-        problem: Problem::new()
-            .source(move |x| load(x[0]))
-            .obstacle_below(|_| -M)
-            .obstacle_above(|_| M)
-            .obstacles_of_degree(0)
-            .solved_by(exact),
-        regularity: Regularity::new(2.5),
-    }
+    let problem = Problem::new()
+        .source(move |x| load(x[0]))
+        .obstacle_below(|_| -M)
+        .obstacle_above(|_| M)
+        .obstacles_of_degree(0)
+        .solved_by(exact);
+    Scene::new("bilateral-1d", BoxDomain::centred(1.0), problem)
+        .summary("a string between floor and ceiling, in contact with both")
+        .regularity(Regularity::new(2.5))
 }

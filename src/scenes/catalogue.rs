@@ -2,17 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use super::scene::Scene;
-use super::{
-    ball_2d, ball_3d, biactive_half_2d, biactive_ring_2d, bilateral_1d, cone, contrast,
-    contrast_disc_2d, degenerate, disc_2d, friction, friction_1d, friction_both_1d, hertz_2d,
-    hertz_3d, hill, icelike_1d, lshape_2d, oscillating_1d, parabola_1d, polynomial, pyramid_2d,
-    pyramid_full_2d, radial, radial_quarter_2d, ridge, signorini_2d, signorini_biactive_2d,
-    signorini_closed_1d, signorini_disc, signorini_grazing_1d, signorini_harmonic,
-    signorini_irrational_2d, signorini_layers_2d, signorini_line_3d, signorini_open_1d,
-    signorini_reaction_1d, signorini_shifted_2d, signorini_sine_2d, signorini_smooth,
-    signorini_two_2d, spiral_2d, torsion_2d,
-};
+use super::*;
 use crate::error::Error;
 
 /// All registered scenes: obstacle problems, those without a solution in closed form last, then
@@ -204,13 +194,7 @@ pub struct Entry {
 
 impl std::fmt::Debug for Entry {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { name, summary, dimension, accepts, build: _ } = self;
-        f.debug_struct("Entry")
-            .field("name", name)
-            .field("summary", summary)
-            .field("dimension", dimension)
-            .field("accepts", accepts)
-            .finish_non_exhaustive()
+        f.debug_struct("Entry").field("name", &self.name).finish_non_exhaustive()
     }
 }
 
@@ -220,12 +204,12 @@ const RATIOS: RangeInclusive<f64> = 1e-100..=1e100;
 impl Entry {
     /// A scene without parameters.
     pub fn new<S: Into<AnyScene>>(build: impl Fn() -> S + Send + Sync + 'static) -> Self {
-        Self::from_parameters(AcceptedParameters::default(), Box::new(move |_| build().into()))
+        Self::with(AcceptedParameters::default(), move |_| build())
     }
     /// A scene that accepts a length scale, one by default.
     pub fn with_scale<S: Into<AnyScene>>(build: impl Fn(f64) -> S + Send + Sync + 'static) -> Self {
         let accepts = AcceptedParameters { scale: true, ..AcceptedParameters::default() };
-        Self::from_parameters(accepts, Box::new(move |p| build(p.scale.unwrap_or(1.0)).into()))
+        Self::with(accepts, move |p| build(p.scale.unwrap_or(1.0)))
     }
     /// A scene that accepts a ratio of coefficients, and its default.
     pub fn with_contrast<S: Into<AnyScene>>(
@@ -233,10 +217,7 @@ impl Entry {
         build: impl Fn(f64) -> S + Send + Sync + 'static,
     ) -> Self {
         let accepts = AcceptedParameters { contrast: true, ..AcceptedParameters::default() };
-        Self::from_parameters(
-            accepts,
-            Box::new(move |p| build(p.contrast.unwrap_or(default)).into()),
-        )
+        Self::with(accepts, move |p| build(p.contrast.unwrap_or(default)))
     }
     /// A scene that accepts the size of its load, and its default.
     pub fn with_load<S: Into<AnyScene>>(
@@ -244,16 +225,19 @@ impl Entry {
         build: impl Fn(f64) -> S + Send + Sync + 'static,
     ) -> Self {
         let accepts = AcceptedParameters { load: true, ..AcceptedParameters::default() };
-        Self::from_parameters(accepts, Box::new(move |p| build(p.load.unwrap_or(default)).into()))
+        Self::with(accepts, move |p| build(p.load.unwrap_or(default)))
     }
     /// An entry whose name, summary and dimension are those of the scene with its defaults.
-    fn from_parameters(accepts: AcceptedParameters, build: Builder) -> Self {
-        let (name, summary, dimension) = match build(&Parameters::default()) {
+    fn with<S: Into<AnyScene>>(
+        accepts: AcceptedParameters,
+        build: impl Fn(&Parameters) -> S + Send + Sync + 'static,
+    ) -> Self {
+        let (name, summary, dimension) = match build(&Parameters::default()).into() {
             AnyScene::One(scene) => (scene.name, scene.summary, 1),
             AnyScene::Two(scene) => (scene.name, scene.summary, 2),
             AnyScene::Three(scene) => (scene.name, scene.summary, 3),
         };
-        Self { name, summary, dimension, accepts, build }
+        Self { name, summary, dimension, accepts, build: Box::new(move |p| build(p).into()) }
     }
 
     /// The scene with these parameters.

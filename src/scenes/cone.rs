@@ -36,15 +36,12 @@ pub fn cone<const D: usize>() -> Scene<D> {
         let r = x.norm();
         if r <= A { (D as f64 - 1.0) / r } else { 0.0 }
     };
-    Scene {
-        name: format!("cone-{D}d"),
-        summary: "no load, the obstacle is a cone; unbounded force at its apex",
-        domain: BoxDomain::centred(1.0).into(),
-        problem: Problem::new().obstacle_below(|x: &Point<D>| 1.0 - x.norm()).solved_by(
-            Exact::new(value, gradient)
-                .with_multiplier(multiplier)
-                .with_contact(|x| A - x.norm(), free_boundary::sphere(A, 2.0)),
-        ),
-        regularity: Regularity::new(if D == 2 { 2.0 } else { 2.5 }),
-    }
+    let problem = Problem::new().obstacle_below(|x: &Point<D>| 1.0 - x.norm()).solved_by(
+        Exact::new(value, gradient)
+            .with_multiplier(multiplier)
+            .with_contact(|x| A - x.norm(), free_boundary::sphere(A, 2.0)),
+    );
+    Scene::new(format!("cone-{D}d"), BoxDomain::centred(1.0), problem)
+        .summary("no load, the obstacle is a cone; unbounded force at its apex")
+        .regularity(Regularity::new(if D == 2 { 2.0 } else { 2.5 }))
 }

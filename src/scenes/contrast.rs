@@ -1,9 +1,9 @@
 //! Membranes of two materials.
 
 use super::free_boundary;
-use super::scene::Scene;
+use super::scene::{Scene, over_plane};
 use crate::mesh::BoxDomain;
-use crate::problem::{Exact, Problem};
+use crate::problem::Exact;
 use crate::real::Point;
 use crate::scheme::Regularity;
 
@@ -31,22 +31,18 @@ pub fn contrast<const D: usize>(contrast: f64) -> Scene<D> {
         1 => vec![transition(0.0)],
         _ => free_boundary::segment(transition(0.0), transition(1.0), 1.0),
     };
-    Scene {
-        name: format!("contrast-{D}d"),
-        summary: "two materials, straight interface; contrast is the ratio of coefficients",
-        domain: BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).into(),
-        problem: Problem::new()
-            .coefficient(move |x| alpha(x[0]))
-            .constant_source(-1.0)
-            .obstacle_below(|_| 0.0)
-            .obstacles_of_degree(0)
-            .solved_by(
-                Exact::new(value, gradient)
-                    .with_multiplier(|x| if x[0] <= 0.25 { 1.0 } else { 0.0 })
-                    .with_contact(|x| 0.25 - x[0], free_boundary),
-            ),
-        regularity: Regularity::new(1.5),
-    }
+    let problem = over_plane().coefficient(move |x| alpha(x[0])).constant_source(-1.0).solved_by(
+        Exact::new(value, gradient)
+            .with_multiplier(|x| if x[0] <= 0.25 { 1.0 } else { 0.0 })
+            .with_contact(|x| 0.25 - x[0], free_boundary),
+    );
+    Scene::new(
+        format!("contrast-{D}d"),
+        BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)),
+        problem,
+    )
+    .summary("two materials, straight interface; contrast is the ratio of coefficients")
+    .regularity(Regularity::new(1.5))
 }
 
 /// Radius of the contact disc of [`contrast_disc_2d`].
@@ -73,20 +69,15 @@ pub fn contrast_disc_2d(contrast: f64) -> Scene<2> {
         let s = x.norm_squared();
         if s <= A * A { Point::zeros() } else { x * ((1.0 - A * A / s) / alpha(x)) }
     };
-    Scene {
-        name: "contrast-disc-2d".into(),
-        summary: "two materials, circular interface; contrast is the ratio of coefficients",
-        domain: BoxDomain::centred(1.5).into(),
-        problem: Problem::new()
-            .piecewise_coefficient(alpha, |x| 1.0 - x.norm())
-            .constant_source(-2.0)
-            .obstacle_below(|_| 0.0)
-            .obstacles_of_degree(0)
-            .solved_by(
-                Exact::new(value, gradient)
-                    .with_multiplier(|x| if x.norm() <= A { 2.0 } else { 0.0 })
-                    .with_contact(|x| A - x.norm(), free_boundary::sphere(A, 3.0)),
-            ),
-        regularity: Regularity::new(1.5),
-    }
+    let problem = over_plane()
+        .piecewise_coefficient(alpha, |x| 1.0 - x.norm())
+        .constant_source(-2.0)
+        .solved_by(
+            Exact::new(value, gradient)
+                .with_multiplier(|x| if x.norm() <= A { 2.0 } else { 0.0 })
+                .with_contact(|x| A - x.norm(), free_boundary::sphere(A, 3.0)),
+        );
+    Scene::new("contrast-disc-2d", BoxDomain::centred(1.5), problem)
+        .summary("two materials, circular interface; contrast is the ratio of coefficients")
+        .regularity(Regularity::new(1.5))
 }

@@ -30,6 +30,17 @@ impl<const D: usize> DualNumber<D> {
             .map(|k| Self::along(k, [1.0 - x[k] * x[k], -2.0 * x[k], -2.0]))
             .fold(Self::along(0, [1.0, 0.0, 0.0]), |product, factor| product * factor)
     }
+    /// `sign (r^2 - square)`, where `r` is the distance from the origin.
+    pub fn from_sphere(x: &Point<D>, square: f64, sign: f64) -> Self {
+        let value = sign * (x.norm_squared() - square);
+        Self { value, gradient: x * (2.0 * sign), laplacian: 2.0 * sign * D as f64 }
+    }
+    /// `max(s, 0)^k` of the function `s`; `k >= 2`.
+    pub fn positive_power(self, k: i32) -> Self {
+        let [value, first, second] = positive_power(self.value, k);
+        let laplacian = second * self.gradient.norm_squared() + first * self.laplacian;
+        Self { value, gradient: self.gradient * first, laplacian }
+    }
     /// The harmonic `Re (s (x - c) + iy)^{3/2}` for the first coordinate `x` and the last one `y`;
     /// `s` is `facing`, 1 for a function that vanishes on `y = 0`, `x < c` and -1 for its mirror
     /// image.

@@ -21,16 +21,13 @@ fn line(lower: f64) -> BoxDomain<1> {
 /// is less than the sum of the thresholds.
 pub fn friction_1d() -> Scene<1> {
     let exact = Exact::new(|x| 1.5 * x[0] - x[0] * x[0], |x| Point::<1>::new(1.5 - 2.0 * x[0]));
-    Scene {
-        name: "friction-1d".into(),
-        summary: "a string held by friction: one end sticks, one slips",
-        domain: line(0.0).into(),
-        problem: Problem::new()
-            .constant_source(2.0)
-            .friction(|x| if x[0] < 0.5 { 2.0 } else { 0.5 })
-            .solved_by(exact),
-        regularity: Regularity::smooth(),
-    }
+    let problem = Problem::new()
+        .constant_source(2.0)
+        .friction(|x| if x[0] < 0.5 { 2.0 } else { 0.5 })
+        .solved_by(exact);
+    Scene::new("friction-1d", line(0.0), problem)
+        .summary("a string held by friction: one end sticks, one slips")
+        .regularity(Regularity::smooth())
 }
 
 /// A string with reaction 1 on `(-1, 1)` that slips upwards at 1 and downwards at -1, with the threshold 1.
@@ -39,18 +36,15 @@ pub fn friction_1d() -> Scene<1> {
 pub fn friction_both_1d() -> Scene<1> {
     let value = |x: &Point<1>| x[0] - 2.0 / 3.0 * x[0].powi(3);
     let exact = Exact::new(value, |x| Point::<1>::new(1.0 - 2.0 * x[0] * x[0]));
-    Scene {
-        name: "friction-both-1d".into(),
-        summary: "a string with reaction that slips in both directions",
-        domain: line(-1.0).into(),
-        problem: Problem::new()
-            .source(move |x| 4.0 * x[0] + value(x))
-            .reaction(1.0)
-            .friction(|_| 1.0)
-            .polynomial_data(3)
-            .solved_by(exact),
-        regularity: Regularity::smooth(),
-    }
+    let problem = Problem::new()
+        .source(move |x| 4.0 * x[0] + value(x))
+        .reaction(1.0)
+        .friction(|_| 1.0)
+        .polynomial_data(3)
+        .solved_by(exact);
+    Scene::new("friction-both-1d", line(-1.0), problem)
+        .summary("a string with reaction that slips in both directions")
+        .regularity(Regularity::smooth())
 }
 
 /// Friction with the threshold 1 on the side `z = 0` of `(-1, 1)^(D-1) x (0, 1)`, `D` = 2 or 3, without load: it sticks where
@@ -69,11 +63,8 @@ pub fn friction<const D: usize>() -> Scene<D> {
     };
     let exact = Exact::new(move |x| x[D - 1] + power(x).value, gradient);
     let domain = BoxDomain::above_contact().side(D - 1, 0, BoundaryCondition::Neumann);
-    Scene {
-        name: format!("friction-{D}d"),
-        summary: "friction without load: stick and slip on one side",
-        domain: domain.into(),
-        problem: Problem::new().friction(|_| 1.0).solved_by(exact),
-        regularity: Regularity::new(2.5),
-    }
+    let problem = Problem::new().friction(|_| 1.0).solved_by(exact);
+    Scene::new(format!("friction-{D}d"), domain, problem)
+        .summary("friction without load: stick and slip on one side")
+        .regularity(Regularity::new(2.5))
 }

@@ -45,16 +45,11 @@ pub fn hertz_2d() -> Scene<2> {
     let exact = Exact::new(value, gradient)
         .with_multiplier(|x| (A * A - x[0] * x[0]).max(0.0).sqrt())
         .with_contact(|x| A - x[0].abs(), vec![Point::from([-A, 0.0]), Point::from([A, 0.0])]);
-    Scene {
-        name: "hertz-2d".into(),
-        summary: "Signorini without load, parabolic gap, contact on a segment",
-        domain: BoxDomain::above_contact().into(),
-        problem: Problem::new()
-            .signorini(|x| -x[0] * x[0] / 2.0)
-            .obstacles_of_degree(2)
-            .solved_by(exact),
-        regularity: Regularity::new(2.5),
-    }
+    let problem =
+        Problem::new().signorini(|x| -x[0] * x[0] / 2.0).obstacles_of_degree(2).solved_by(exact);
+    Scene::new("hertz-2d", BoxDomain::above_contact(), problem)
+        .summary("Signorini without load, parabolic gap, contact on a segment")
+        .regularity(Regularity::new(2.5))
 }
 
 /// `sqrt(w - a) sqrt(w + a)`, continuous on the closed upper half plane; the square root of the

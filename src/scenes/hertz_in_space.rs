@@ -45,16 +45,13 @@ pub fn hertz_3d() -> Scene<3> {
     let exact = Exact::new(value, gradient)
         .with_multiplier(move |x| 4.0 / PI * inside(x).max(0.0).sqrt())
         .with_contact(inside, free_boundary::circle(A, 2.0));
-    Scene {
-        name: "hertz-3d".into(),
-        summary: "Signorini without load in space, parabolic gap, contact in a disc",
-        domain: BoxDomain::above_contact().into(),
-        problem: Problem::new()
-            .signorini(|x| A * A - (x[0] * x[0] + x[1] * x[1]) / 2.0)
-            .obstacles_of_degree(2)
-            .solved_by(exact),
-        regularity: Regularity::new(2.5),
-    }
+    let problem = Problem::new()
+        .signorini(|x| A * A - (x[0] * x[0] + x[1] * x[1]) / 2.0)
+        .obstacles_of_degree(2)
+        .solved_by(exact);
+    Scene::new("hertz-3d", BoxDomain::above_contact(), problem)
+        .summary("Signorini without load in space, parabolic gap, contact in a disc")
+        .regularity(Regularity::new(2.5))
 }
 
 /// Quantities of the solution at a point.

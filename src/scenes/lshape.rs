@@ -2,9 +2,9 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
-use super::scene::Scene;
+use super::scene::{Scene, over_plane};
 use crate::mesh::Domain;
-use crate::problem::{Exact, Problem};
+use crate::problem::Exact;
 use crate::real::Point;
 use crate::scheme::Regularity;
 
@@ -50,19 +50,14 @@ pub fn lshape_2d() -> Scene<2> {
         };
         -smooth * (2.0 * phi / 3.0).sin() - pressed(x)
     };
-    Scene {
-        name: "lshape-2d".into(),
-        summary: "L-shaped membrane over a plane: a corner singularity, contact outside a disc",
-        domain: Domain::LShape { half: 2.0 },
-        problem: Problem::new()
-            .piecewise_source(source, |x| {
-                [0.25, 0.75, 1.25].iter().map(|circle| x.norm() - circle).product()
-            })
-            .obstacle_below(|_| 0.0)
-            .obstacles_of_degree(0)
-            .solved_by(Exact::new(value, gradient).with_multiplier(pressed)),
-        regularity: Regularity::new(5.0 / 3.0).not_strictly_complementary(),
-    }
+    let problem = over_plane()
+        .piecewise_source(source, |x| {
+            [0.25, 0.75, 1.25].iter().map(|circle| x.norm() - circle).product()
+        })
+        .solved_by(Exact::new(value, gradient).with_multiplier(pressed));
+    Scene::new("lshape-2d", Domain::LShape { half: 2.0 }, problem)
+        .summary("L-shaped membrane over a plane: a corner singularity, contact outside a disc")
+        .regularity(Regularity::new(5.0 / 3.0).not_strictly_complementary())
 }
 
 /// Distance from the corner and angle from the positive `x` axis. `atan2` is applied to the angle from

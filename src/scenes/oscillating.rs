@@ -54,15 +54,16 @@ pub fn oscillating_1d() -> Scene<1> {
     let exact = Exact::new(value, gradient)
         .with_multiplier(move |x| if inside(x[0]) >= 0.0 { -load(x[0]) } else { 0.0 })
         .with_contact(move |x| inside(x[0]), [X0, FIRST, LAST, X3].map(|x| [x].into()).into());
-    Scene {
-        name: "oscillating-1d".into(),
-        summary: "a string below a ceiling, load of high frequency, touches without force",
-        domain: BoxDomain::dirichlet(Point::repeat(0.0), Point::repeat(1.0)).into(),
-        problem: Problem::new()
-            .source(move |x| load(x[0]))
-            .obstacle_above(|_| 1.0)
-            .obstacles_of_degree(0)
-            .solved_by(exact),
-        regularity: Regularity::new(2.5),
-    }
+    let problem = Problem::new()
+        .source(move |x| load(x[0]))
+        .obstacle_above(|_| 1.0)
+        .obstacles_of_degree(0)
+        .solved_by(exact);
+    Scene::new(
+        "oscillating-1d",
+        BoxDomain::dirichlet(Point::repeat(0.0), Point::repeat(1.0)),
+        problem,
+    )
+    .summary("a string below a ceiling, load of high frequency, touches without force")
+    .regularity(Regularity::new(2.5))
 }

@@ -1,8 +1,8 @@
 //! Powers of `r^2 - r0^2` and `r0^2 - r^2` over a plane obstacle, with and without force on contact.
 
-use super::dual_number::{DualNumber, positive_power};
+use super::dual_number::DualNumber;
 use super::free_boundary;
-use super::scene::Scene;
+use super::scene::{Scene, over_plane};
 use crate::mesh::BoxDomain;
 use crate::problem::{Datum, Exact, Problem};
 use crate::real::Point;
@@ -31,17 +31,10 @@ pub fn polynomial<const D: usize>() -> Scene<D> {
             if s > R0 * R0 { 0.0 } else { force(s) }
         })
         .with_contact(|x| R0 - x.norm(), free_boundary::sphere(R0, 2.0));
-    Scene {
-        name: format!("polynomial-{D}d"),
-        summary: "a polynomial over a plane obstacle, continuous load, contact in a ball",
-        domain: BoxDomain::centred(1.0).into(),
-        problem: Problem::new()
-            .piecewise_source(source, from_sphere)
-            .obstacle_below(|_| 0.0)
-            .obstacles_of_degree(0)
-            .solved_by(exact),
-        regularity: Regularity::new(2.5),
-    }
+    let problem = over_plane().piecewise_source(source, from_sphere).solved_by(exact);
+    Scene::new(format!("polynomial-{D}d"), BoxDomain::centred(1.0), problem)
+        .summary("a polynomial over a plane obstacle, continuous load, contact in a ball")
+        .regularity(Regularity::new(2.5))
 }
 
 /// A hill in the ball `r < r0 = 0.7` on a plane obstacle, in `D` dimensions: `(-1, 1)^D`, `psi = 0`, contact
@@ -52,23 +45,15 @@ pub fn polynomial<const D: usize>() -> Scene<D> {
 /// multiplier is `-f >= 8 r0^2`, since `r >= r0`. The second derivatives jump: `C^{1,1}`, `H^s` for `s < 5/2`.
 pub fn hill<const D: usize>() -> Scene<D> {
     let load = |x: &Point<D>| -4.0 * D as f64 * from_sphere(x) - 8.0 * x.norm_squared();
-    let below = |x: &Point<D>| positive_power(-from_sphere(x), 2);
-    let exact = Exact::new(move |x| below(x)[0], move |x| x * (-2.0 * below(x)[1]))
+    let solution = |x: &Point<D>| DualNumber::from_sphere(x, R0 * R0, -1.0).positive_power(2);
+    let exact = Exact::new(move |x| solution(x).value, move |x| solution(x).gradient)
         .with_multiplier(move |x| if from_sphere(x) >= 0.0 { -load(x) } else { 0.0 })
         .with_contact(|x| x.norm() - R0, free_boundary::sphere(R0, 2.0));
-    let problem = Problem { dirichlet: Datum::Constant(0.0).into(), ..Problem::new() };
-    Scene {
-        name: format!("hill-{D}d"),
-        summary: "a hill on a plane obstacle, contact outside a ball; polynomial data",
-        domain: BoxDomain::centred(1.0).into(),
-        problem: problem
-            .source(load)
-            .obstacle_below(|_| 0.0)
-            .obstacles_of_degree(0)
-            .solved_by(exact)
-            .polynomial_data(2),
-        regularity: Regularity::new(2.5),
-    }
+    let problem = Problem { dirichlet: Datum::Constant(0.0).into(), ..over_plane() };
+    let problem = problem.source(load).solved_by(exact).polynomial_data(2);
+    Scene::new(format!("hill-{D}d"), BoxDomain::centred(1.0), problem)
+        .summary("a hill on a plane obstacle, contact outside a ball; polynomial data")
+        .regularity(Regularity::new(2.5))
 }
 
 /// `degenerate2-2d`, `degenerate3-2d` and `degenerate4-2d`: contact without force in the disc
@@ -79,20 +64,14 @@ pub fn hill<const D: usize>() -> Scene<D> {
 /// multiplier vanishes everywhere and the data do not determine the contact set. `u` lies in `H^s` for
 /// `s < k + 1/2`.
 pub fn degenerate(k: i32) -> Scene<2> {
-    Scene {
-        name: format!("degenerate{k}-2d"),
-        summary: "contact with a plane obstacle in a disc, without any force",
-        domain: BoxDomain::centred(1.0).into(),
-        problem: Problem::new()
-            .piecewise_source(move |x| -power(x, k).laplacian, from_sphere)
-            .obstacle_below(|_| 0.0)
-            .obstacles_of_degree(0)
-            .solved_by(
-                Exact::new(move |x| power(x, k).value, move |x| power(x, k).gradient)
-                    .with_multiplier(|_| 0.0),
-            ),
-        regularity: Regularity::new(f64::from(k) + 0.5).not_strictly_complementary(),
-    }
+    let problem =
+        over_plane().piecewise_source(move |x| -power(x, k).laplacian, from_sphere).solved_by(
+            Exact::new(move |x| power(x, k).value, move |x| power(x, k).gradient)
+                .with_multiplier(|_| 0.0),
+        );
+    Scene::new(format!("degenerate{k}-2d"), BoxDomain::centred(1.0), problem)
+        .summary("contact with a plane obstacle in a disc, without any force")
+        .regularity(Regularity::new(f64::from(k) + 0.5).not_strictly_complementary())
 }
 
 /// `r^2 - r0^2`.
@@ -100,10 +79,7 @@ fn from_sphere<const D: usize>(x: &Point<D>) -> f64 {
     x.norm_squared() - R0 * R0
 }
 
-/// `max(r^2 - r0^2, 0)^k`: with `s = r^2 - r0^2`, `|grad s|^2 = 4 r^2` and `Laplace s = 2 D`.
+/// `max(r^2 - r0^2, 0)^k`.
 fn power<const D: usize>(x: &Point<D>, k: i32) -> DualNumber<D> {
-    let r_squared = x.norm_squared();
-    let [value, first, second] = positive_power(from_sphere(x), k);
-    let laplacian = second * 4.0 * r_squared + first * 2.0 * D as f64;
-    DualNumber { value, gradient: x * (2.0 * first), laplacian }
+    DualNumber::from_sphere(x, R0 * R0, 1.0).positive_power(k)
 }

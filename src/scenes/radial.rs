@@ -1,7 +1,7 @@
 //! A membrane pulled onto a plane.
 
 use super::free_boundary;
-use super::scene::Scene;
+use super::scene::{Scene, over_plane};
 use crate::mesh::{BoundaryCondition, BoxDomain};
 use crate::problem::{BoundaryFlux, Exact, Problem};
 use crate::real::Point;
@@ -40,17 +40,10 @@ pub fn radial<const D: usize>(scale: f64) -> Scene<D> {
             move |x| 1.0 - (x * per_scale).norm(),
             free_boundary::sphere(scale, 3.0 * scale),
         );
-    Scene {
-        name: format!("radial-{D}d"),
-        summary: "constant load on a plane obstacle, contact in a ball; scale sets its radius",
-        domain: BoxDomain::centred(1.5 * scale).into(),
-        problem: Problem::new()
-            .constant_source(-load)
-            .obstacle_below(|_| 0.0)
-            .obstacles_of_degree(0)
-            .solved_by(exact),
-        regularity: Regularity::new(2.5),
-    }
+    let problem = over_plane().constant_source(-load).solved_by(exact);
+    Scene::new(format!("radial-{D}d"), BoxDomain::centred(1.5 * scale), problem)
+        .summary("constant load on a plane obstacle, contact in a ball; scale sets its radius")
+        .regularity(Regularity::new(2.5))
 }
 
 /// A quarter of `radial-2d`: `(0, 3/2)^2` with no flux through the sides on the axes of symmetry.
@@ -62,13 +55,10 @@ pub fn radial_quarter_2d() -> Scene<2> {
     if let Some(contact) = scene.problem.exact.as_mut().and_then(|exact| exact.contact.as_mut()) {
         contact.free_boundary.retain(|x| x.min() >= 0.0);
     }
-    Scene {
-        name: "radial-quarter-2d".into(),
-        summary: "a quarter of radial-2d, with Neumann sides on the axes of symmetry",
-        domain: domain.into(),
-        problem: Problem { neumann: BoundaryFlux::Constant(0.0).into(), ..scene.problem },
-        regularity: scene.regularity,
-    }
+    let problem = Problem { neumann: BoundaryFlux::Constant(0.0).into(), ..scene.problem };
+    Scene::new("radial-quarter-2d", domain, problem)
+        .summary("a quarter of radial-2d, with Neumann sides on the axes of symmetry")
+        .regularity(scene.regularity)
 }
 
 /// `w(r)`, in forms that keep the double zero at `r = 1` free of cancellation.

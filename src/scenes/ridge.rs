@@ -14,16 +14,13 @@ use crate::scheme::Regularity;
 /// `x_1 = 0` and no function. `u` lies in `H^s` for `s < 3/2`. On meshes in which that plane
 /// consists of facets, conforming linear elements are exact.
 pub fn ridge<const D: usize>() -> Scene<D> {
-    Scene {
-        name: format!("ridge-{D}d"),
-        summary: "no load, the obstacle is a ridge; a force on a line or plane",
-        domain: BoxDomain::centred(1.0).into(),
-        problem: Problem::new().obstacle_below(|x: &Point<D>| 0.5 - x[0].abs()).exact(
-            |x| (1.0 - x[0].abs()) / 2.0,
-            |x| Point::from_fn(|k, _| if k == 0 { -x[0].signum() / 2.0 } else { 0.0 }),
-        ),
-        regularity: Regularity::new(1.5),
-    }
+    let problem = Problem::new().obstacle_below(|x: &Point<D>| 0.5 - x[0].abs()).exact(
+        |x| (1.0 - x[0].abs()) / 2.0,
+        |x| Point::from_fn(|k, _| if k == 0 { -x[0].signum() / 2.0 } else { 0.0 }),
+    );
+    Scene::new(format!("ridge-{D}d"), BoxDomain::centred(1.0), problem)
+        .summary("no load, the obstacle is a ridge; a force on a line or plane")
+        .regularity(Regularity::new(1.5))
 }
 
 /// A membrane under the load `f = -1` on `(-1, 1)^2` that lies on the pyramid
@@ -40,14 +37,11 @@ pub fn pyramid_full_2d() -> Scene<2> {
         let axis = usize::from(x[1].abs() > x[0].abs());
         Point::from_fn(|k, _| if k == axis { -x[k].signum() } else { 0.0 })
     };
-    Scene {
-        name: "pyramid-full-2d".into(),
-        summary: "contact everywhere with a pyramid; a force on its edges",
-        domain: BoxDomain::centred(1.0).into(),
-        problem: Problem::new()
-            .piecewise_source(|_| -1.0, |x| x[0].abs() - x[1].abs())
-            .obstacle_below(height)
-            .solved_by(Exact::new(height, gradient).with_contact(|_| 1.0, Vec::new())),
-        regularity: Regularity::new(1.5),
-    }
+    let problem = Problem::new()
+        .piecewise_source(|_| -1.0, |x| x[0].abs() - x[1].abs())
+        .obstacle_below(height)
+        .solved_by(Exact::new(height, gradient).with_contact(|_| 1.0, Vec::new()));
+    Scene::new("pyramid-full-2d", BoxDomain::centred(1.0), problem)
+        .summary("contact everywhere with a pyramid; a force on its edges")
+        .regularity(Regularity::new(1.5))
 }

@@ -20,6 +20,16 @@ pub struct Scene<const D: usize> {
     pub regularity: Regularity,
 }
 
+/// A problem over the plane obstacle `psi = 0`.
+pub(super) fn over_plane<const D: usize>() -> Problem<D> {
+    Problem::new().obstacle_below(|_| 0.0).obstacles_of_degree(0)
+}
+
+/// A Signorini problem with the gap zero.
+pub(super) fn zero_gap<const D: usize>() -> Problem<D> {
+    Problem::new().signorini(|_| 0.0).obstacles_of_degree(0)
+}
+
 impl<const D: usize> Scene<D> {
     /// A scene without a summary, of whose solution no more is known than that it has finite energy
     /// ([`Regularity::finite_energy`]).

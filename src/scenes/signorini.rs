@@ -5,9 +5,9 @@ use std::f64::consts::SQRT_2;
 
 use super::dual_number::DualNumber;
 use super::free_boundary;
-use super::scene::Scene;
+use super::scene::{Scene, zero_gap};
 use crate::mesh::BoxDomain;
-use crate::problem::{Exact, Problem};
+use crate::problem::Exact;
 use crate::real::Point;
 use crate::scheme::Regularity;
 
@@ -54,17 +54,10 @@ fn transition_at<const D: usize>(c: f64, name: &str, summary: &'static str) -> S
     let exact = Exact::new(move |x| solution(x).value, move |x| solution(x).gradient)
         .with_multiplier(move |x| 1.5 * DualNumber::bubble(x).value * (c - x[0]).max(0.0).sqrt())
         .with_contact(move |x| c - x[0], free_boundary::transition_at(c));
-    Scene {
-        name: name.into(),
-        summary,
-        domain: BoxDomain::above_contact().into(),
-        problem: Problem::new()
-            .source(move |x| -solution(x).laplacian)
-            .signorini(|_| 0.0)
-            .obstacles_of_degree(0)
-            .solved_by(exact),
-        regularity: Regularity::new(2.5),
-    }
+    let problem = zero_gap().source(move |x| -solution(x).laplacian).solved_by(exact);
+    Scene::new(name, BoxDomain::above_contact(), problem)
+        .summary(summary)
+        .regularity(Regularity::new(2.5))
 }
 
 /// Ends of the contact segment of [`signorini_two_2d`].
@@ -101,17 +94,12 @@ pub fn signorini_two_2d() -> Scene<2> {
             |x| (x[0] - LEFT).min(RIGHT - x[0]),
             vec![Point::from([LEFT, 0.0]), Point::from([RIGHT, 0.0])],
         );
-    Scene {
-        name: "signorini-two-2d".into(),
-        summary: "Signorini, zero Dirichlet data, contact on a segment: two singularities",
-        domain: BoxDomain::above_contact().into(),
-        problem: Problem::new()
-            .piecewise_source(move |x| -solution(x).laplacian, |x| x[0].abs() - STEP)
-            .signorini(|_| 0.0)
-            .obstacles_of_degree(0)
-            .solved_by(exact),
-        regularity: Regularity::new(2.5),
-    }
+    let problem = zero_gap()
+        .piecewise_source(move |x| -solution(x).laplacian, |x| x[0].abs() - STEP)
+        .solved_by(exact);
+    Scene::new("signorini-two-2d", BoxDomain::above_contact(), problem)
+        .summary("Signorini, zero Dirichlet data, contact on a segment: two singularities")
+        .regularity(Regularity::new(2.5))
 }
 
 /// `10 t^3 - 15 t^4 + 6 t^5` for `t` from 0 to 1 as `x` goes from -1/5 to 1/5, and its first two

@@ -2,9 +2,9 @@
 
 use super::dual_number::DualNumber;
 use super::free_boundary;
-use super::scene::Scene;
+use super::scene::{Scene, zero_gap};
 use crate::mesh::BoxDomain;
-use crate::problem::{Exact, Problem};
+use crate::problem::Exact;
 use crate::real::Point;
 use crate::scheme::Regularity;
 
@@ -25,11 +25,8 @@ pub fn signorini_harmonic<const D: usize>() -> Scene<D> {
     let exact = Exact::new(move |x| power(x).value, move |x| power(x).gradient)
         .with_multiplier(|x| 1.5 * (-x[0]).max(0.0).sqrt())
         .with_contact(|x| -x[0], free_boundary::transition_at(0.0));
-    Scene {
-        name: format!("signorini-harmonic-{D}d"),
-        summary: "Signorini without load, the harmonic function r^(3/2) cos(3 theta/2)",
-        domain: BoxDomain::above_contact().into(),
-        problem: Problem::new().signorini(|_| 0.0).obstacles_of_degree(0).solved_by(exact),
-        regularity: Regularity::new(2.5),
-    }
+    let problem = zero_gap().solved_by(exact);
+    Scene::new(format!("signorini-harmonic-{D}d"), BoxDomain::above_contact(), problem)
+        .summary("Signorini without load, the harmonic function r^(3/2) cos(3 theta/2)")
+        .regularity(Regularity::new(2.5))
 }

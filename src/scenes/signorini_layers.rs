@@ -1,9 +1,9 @@
 //! Signorini conditions on a layer of another material.
 
 use super::dual_number::positive_power;
-use super::scene::Scene;
+use super::scene::{Scene, zero_gap};
 use crate::mesh::BoxDomain;
-use crate::problem::{Exact, Problem};
+use crate::problem::Exact;
 use crate::real::Point;
 use crate::scheme::Regularity;
 
@@ -33,16 +33,11 @@ pub fn signorini_layers_2d(contrast: f64) -> Scene<2> {
     let exact = Exact::new(value, gradient)
         .with_multiplier(|x| positive_power(-x[0], 3)[0])
         .with_contact(|x| -x[0], vec![Point::zeros()]);
-    Scene {
-        name: "signorini-layers-2d".into(),
-        summary: "Signorini under two layers; contrast is the ratio of coefficients",
-        domain: BoxDomain::above_contact().into(),
-        problem: Problem::new()
-            .coefficient(alpha)
-            .piecewise_source(source, |x| x[0] * (x[1] - 0.5))
-            .signorini(|_| 0.0)
-            .obstacles_of_degree(0)
-            .solved_by(exact),
-        regularity: Regularity::new(1.5),
-    }
+    let problem = zero_gap()
+        .coefficient(alpha)
+        .piecewise_source(source, |x| x[0] * (x[1] - 0.5))
+        .solved_by(exact);
+    Scene::new("signorini-layers-2d", BoxDomain::above_contact(), problem)
+        .summary("Signorini under two layers; contrast is the ratio of coefficients")
+        .regularity(Regularity::new(1.5))
 }

@@ -3,9 +3,9 @@
 
 use super::dual_number::{DualNumber, positive_power};
 use super::free_boundary;
-use super::scene::Scene;
+use super::scene::{Scene, zero_gap};
 use crate::mesh::BoxDomain;
-use crate::problem::{Exact, Problem};
+use crate::problem::Exact;
 use crate::real::Point;
 use crate::scheme::Regularity;
 
@@ -15,17 +15,12 @@ use crate::scheme::Regularity;
 /// The solution is that of `wedge` with `b = 0`, which lies in `H^s` for `s < k + 1/2`.
 pub fn signorini_smooth(k: i32) -> Scene<2> {
     let exact = wedge(k, 0.0).with_contact(|x| -x[0], vec![Point::zeros()]);
-    Scene {
-        name: format!("signorini-smooth{k}-2d"),
-        summary: "Signorini, gap and pressure vanish with the order in the name",
-        domain: BoxDomain::above_contact().into(),
-        problem: Problem::new()
-            .piecewise_source(move |x| -wedge_solution(x, k, 0.0).laplacian, |x| x[0])
-            .signorini(|_| 0.0)
-            .obstacles_of_degree(0)
-            .solved_by(exact),
-        regularity: Regularity::new(f64::from(k) + 0.5),
-    }
+    let problem = zero_gap()
+        .piecewise_source(move |x| -wedge_solution(x, k, 0.0).laplacian, |x| x[0])
+        .solved_by(exact);
+    Scene::new(format!("signorini-smooth{k}-2d"), BoxDomain::above_contact(), problem)
+        .summary("Signorini, gap and pressure vanish with the order in the name")
+        .regularity(Regularity::new(f64::from(k) + 0.5))
 }
 
 /// Contact without pressure on a segment: on `|x| <= 1/4` both gap and pressure vanish.
@@ -33,17 +28,12 @@ pub fn signorini_smooth(k: i32) -> Scene<2> {
 /// The solution is that of `wedge` with `b = 1/4` and `k = 2`; the data do not determine the
 /// contact set.
 pub fn signorini_biactive_2d() -> Scene<2> {
-    Scene {
-        name: "signorini-biactive-2d".into(),
-        summary: "Signorini, gap and pressure both vanish on a segment",
-        domain: BoxDomain::above_contact().into(),
-        problem: Problem::new()
-            .piecewise_source(|x| -wedge_solution(x, 2, 0.25).laplacian, |x| x[0].abs() - 0.25)
-            .signorini(|_| 0.0)
-            .obstacles_of_degree(0)
-            .solved_by(wedge(2, 0.25)),
-        regularity: Regularity::new(2.5).not_strictly_complementary(),
-    }
+    let problem = zero_gap()
+        .piecewise_source(|x| -wedge_solution(x, 2, 0.25).laplacian, |x| x[0].abs() - 0.25)
+        .solved_by(wedge(2, 0.25));
+    Scene::new("signorini-biactive-2d", BoxDomain::above_contact(), problem)
+        .summary("Signorini, gap and pressure both vanish on a segment")
+        .regularity(Regularity::new(2.5).not_strictly_complementary())
 }
 
 /// `u = q (P - y N)` on `(-1, 1) x (0, 1)` with `q = (1 - x^2)(1 - y^2)`, `P = max(x - b, 0)^k` and
@@ -76,17 +66,11 @@ pub fn signorini_disc(k: i32) -> Scene<3> {
     let exact = Exact::new(move |x| solution(x).value, move |x| solution(x).gradient)
         .with_multiplier(move |x| disc_power(x, -1.0, k).value)
         .with_contact(|x| -from_circle(x), free_boundary::circle(0.5, 2.0));
-    Scene {
-        name: format!("signorini-disc{k}-3d"),
-        summary: "Signorini in space, contact in a disc, left with the order in the name",
-        domain: BoxDomain::above_contact().into(),
-        problem: Problem::new()
-            .piecewise_source(move |x| -solution(x).laplacian, from_circle)
-            .signorini(|_| 0.0)
-            .obstacles_of_degree(0)
-            .solved_by(exact),
-        regularity: Regularity::new(f64::from(k) + 0.5),
-    }
+    let problem =
+        zero_gap().piecewise_source(move |x| -solution(x).laplacian, from_circle).solved_by(exact);
+    Scene::new(format!("signorini-disc{k}-3d"), BoxDomain::above_contact(), problem)
+        .summary("Signorini in space, contact in a disc, left with the order in the name")
+        .regularity(Regularity::new(f64::from(k) + 0.5))
 }
 
 /// `x^2 + y^2 - 1/4`.
@@ -94,10 +78,9 @@ fn from_circle(x: &Point<3>) -> f64 {
     x[0] * x[0] + x[1] * x[1] - 0.25
 }
 
-/// `max(sign p, 0)^k`: `|grad p|^2 = 4 (x^2 + y^2)` and `Laplace p = 4`.
+/// `max(sign p, 0)^k`.
 fn disc_power(x: &Point<3>, sign: f64, k: i32) -> DualNumber<3> {
-    let [value, first, second] = positive_power(sign * from_circle(x), k);
-    let gradient = Point::<3>::new(x[0], x[1], 0.0) * (2.0 * sign * first);
-    let laplacian = second * 4.0 * (x[0] * x[0] + x[1] * x[1]) + sign * first * 4.0;
-    DualNumber { value, gradient, laplacian }
+    let gradient = Point::<3>::new(x[0], x[1], 0.0) * (2.0 * sign);
+    let p = DualNumber { value: sign * from_circle(x), gradient, laplacian: 4.0 * sign };
+    p.positive_power(k)
 }

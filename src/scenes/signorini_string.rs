@@ -1,8 +1,8 @@
 //! Signorini conditions at the ends of a string.
 
-use super::scene::Scene;
+use super::scene::{Scene, zero_gap};
 use crate::mesh::{BoundaryCondition, BoxDomain};
-use crate::problem::{Exact, Problem};
+use crate::problem::Exact;
 use crate::real::Point;
 use crate::scheme::Regularity;
 
@@ -22,21 +22,18 @@ pub fn signorini_reaction_1d() -> Scene<1> {
     let exact = Exact::new(value, move |x| Point::<1>::new(slope(x[0])))
         .with_multiplier(move |x| if x[0] < 0.0 { -slope(x[0]) } else { 0.0 })
         .with_contact(|x| -x[0], Vec::new());
-    Scene {
-        name: "signorini-reaction-1d".into(),
-        summary: "a string with reaction, Signorini at both ends: one in contact, one open",
-        domain: BoxDomain::centred(1.0)
-            .side(0, 0, BoundaryCondition::Contact)
-            .side(0, 1, BoundaryCondition::Contact)
-            .into(),
-        problem: Problem::new()
-            .source(|x| x[0].sin())
-            .reaction(1.0)
-            .signorini(|_| 0.0)
-            .obstacles_of_degree(0)
-            .solved_by(exact),
-        regularity: Regularity::smooth(),
-    }
+    let problem = zero_gap().source(|x| x[0].sin()).reaction(1.0).solved_by(exact);
+    Scene::new(
+        "signorini-reaction-1d",
+        BoxDomain::centred(1.0).side(0, 0, BoundaryCondition::Contact).side(
+            0,
+            1,
+            BoundaryCondition::Contact,
+        ),
+        problem,
+    )
+    .summary("a string with reaction, Signorini at both ends: one in contact, one open")
+    .regularity(Regularity::smooth())
 }
 
 /// A string on `(0, 1)`, fixed at 0 and lifted off the support at 1 by the load `f = 1`.
@@ -68,18 +65,16 @@ pub fn signorini_grazing_1d() -> Scene<1> {
 
 /// A string on `(0, 1)`, fixed at 0, under a constant load, with zero gap at 1; its solution is smooth.
 fn supported(name: &str, summary: &'static str, load: f64, exact: Exact<1>) -> Scene<1> {
-    Scene {
-        name: name.into(),
-        summary,
-        domain: BoxDomain::dirichlet(Point::repeat(0.0), Point::repeat(1.0))
-            .side(0, 1, BoundaryCondition::Contact)
-            .into(),
-        problem: Problem::new()
-            .constant_source(load)
-            .signorini(|_| 0.0)
-            .obstacles_of_degree(0)
-            .solved_by(exact)
-            .polynomial_data(0),
-        regularity: Regularity::smooth(),
-    }
+    let problem = zero_gap().constant_source(load).solved_by(exact).polynomial_data(0);
+    Scene::new(
+        name,
+        BoxDomain::dirichlet(Point::repeat(0.0), Point::repeat(1.0)).side(
+            0,
+            1,
+            BoundaryCondition::Contact,
+        ),
+        problem,
+    )
+    .summary(summary)
+    .regularity(Regularity::smooth())
 }

@@ -81,11 +81,8 @@ fn string(
     let exact = Exact::new(value, gradient)
         .with_multiplier(move |x| if contact(x[0]) >= 0.0 { 18.0 } else { 0.0 })
         .with_contact(move |x| contact(x[0]), transitions.iter().map(|&x| [x].into()).collect());
-    Scene {
-        name: name.into(),
-        summary,
-        domain: BoxDomain::dirichlet(Point::repeat(0.0), Point::repeat(1.0)).into(),
-        problem: problem.solved_by(exact),
-        regularity: Regularity::new(2.5),
-    }
+    let problem = problem.solved_by(exact);
+    Scene::new(name, BoxDomain::dirichlet(Point::repeat(0.0), Point::repeat(1.0)), problem)
+        .summary(summary)
+        .regularity(Regularity::new(2.5))
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::scene::Scene;
+use super::scene::{Scene, zero_gap};
 use crate::mesh::{BoundaryCondition, BoxDomain};
 use crate::problem::Problem;
 use crate::real::Point;
@@ -23,13 +23,10 @@ pub fn spiral_2d() -> Scene<2> {
         let phase = 2.0 * PI / r + FRAC_PI_2 - x[1].atan2(x[0]);
         phase.sin() + r * (r + 1.0) / (r - 2.0) - 3.0 * r + 3.6
     };
-    Scene {
-        name: "spiral-2d".into(),
-        summary: "no load, a spiral obstacle; no closed solution",
-        domain: BoxDomain::centred(1.0).into(),
-        problem: Problem::new().obstacle_below(obstacle).reference_energy(34.48, 0.02),
-        regularity: Regularity::new(1.0),
-    }
+    let problem = Problem::new().obstacle_below(obstacle).reference_energy(34.48, 0.02);
+    Scene::new("spiral-2d", BoxDomain::centred(1.0), problem)
+        .summary("no load, a spiral obstacle; no closed solution")
+        .regularity(Regularity::new(1.0))
 }
 
 /// A Signorini problem of F. Ben Belgacem, Y. Renard, *Math. Comp.* 72 (2003), with the sign of `u`
@@ -42,17 +39,12 @@ pub fn signorini_sine_2d() -> Scene<2> {
         .side(0, 0, BoundaryCondition::Neumann)
         .side(0, 1, BoundaryCondition::Neumann)
         .side(1, 0, BoundaryCondition::Contact);
-    Scene {
-        name: "signorini-sine-2d".into(),
-        summary: "Signorini with a load that pulls and pushes; no closed solution",
-        domain: domain.into(),
-        problem: Problem::new()
-            .source(|x| 2.0 * PI * (2.0 * PI * x[0]).sin())
-            .signorini(|_| 0.0)
-            .obstacles_of_degree(0)
-            .reference_energy(-0.461_754, 1e-6),
-        regularity: Regularity::new(2.5),
-    }
+    let problem = zero_gap()
+        .source(|x| 2.0 * PI * (2.0 * PI * x[0]).sin())
+        .reference_energy(-0.461_754, 1e-6);
+    Scene::new("signorini-sine-2d", domain, problem)
+        .summary("Signorini with a load that pulls and pushes; no closed solution")
+        .regularity(Regularity::new(2.5))
 }
 
 /// Torsion of a square bar that yields: on `(0, 1)^2` the stress function `u` is zero on the
@@ -68,13 +60,9 @@ pub fn torsion_2d(load: f64) -> Scene<2> {
         problem,
         &[(5.0, -0.418_495, 1e-6), (10.0, -1.204_642, 1e-6), (20.0, -2.851_16, 1e-5)],
     );
-    Scene {
-        name: "torsion-2d".into(),
-        summary: "elastic-plastic torsion of a square bar; load is f; no closed solution",
-        domain: BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).into(),
-        problem,
-        regularity: Regularity::new(2.0),
-    }
+    Scene::new("torsion-2d", BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)), problem)
+        .summary("elastic-plastic torsion of a square bar; load is f; no closed solution")
+        .regularity(Regularity::new(2.0))
 }
 
 /// A membrane under the load `f` = `load` on `(-1, 1)^2`, zero on the boundary, over the pyramid
@@ -87,13 +75,9 @@ pub fn pyramid_2d(load: f64) -> Scene<2> {
         .constant_source(load)
         .obstacle_below(|x: &Point<2>| 0.5 - x[0].abs().max(x[1].abs()));
     let problem = known_at(load, problem, &[(-4.0, 0.645_43, 1e-5), (0.0, 0.262_696, 1e-6)]);
-    Scene {
-        name: "pyramid-2d".into(),
-        summary: "a membrane over a pyramid; load is f; no closed solution",
-        domain: BoxDomain::centred(1.0).into(),
-        problem,
-        regularity: Regularity::new(1.5),
-    }
+    Scene::new("pyramid-2d", BoxDomain::centred(1.0), problem)
+        .summary("a membrane over a pyramid; load is f; no closed solution")
+        .regularity(Regularity::new(1.5))
 }
 
 /// The problem with its energy, if the load is one of those listed with energy and uncertainty.

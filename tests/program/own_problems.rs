@@ -188,7 +188,7 @@ fn every_command_takes_a_mesh_and_the_conditions_on_its_boundary() {
     let on = format!("--scene radial-2d --mesh {mesh} --out {out}");
     let bound = format!("{on} --boundary wall=dirichlet");
     for (name, options) in [
-        ("pictures", "--scheme p1 --level 1 --series 0,1"),
+        ("pictures", "--scheme p1 --level 1"),
         ("work-precision", "--scheme p1 --levels 1 --rounds 1"),
     ] {
         assert_eq!(run(name, &format!("{bound} {options}")), (Some(0), String::new()), "{name}");
@@ -199,10 +199,7 @@ fn every_command_takes_a_mesh_and_the_conditions_on_its_boundary() {
         assert_eq!(code, Some(2), "{name}: {message}");
         assert!(message.contains("has no group gate; it has wall"), "{message}");
     }
-    for file in ["radial-2d-p1-1.svg", "radial-2d-p1-0.vtu", "radial-2d-p1.vtu", "radial-2d-p1.pvd"]
-    {
-        assert!(scratch.0.join("pictures").join(file).exists(), "{file}");
-    }
+    assert!(scratch.0.join("pictures/radial-2d-p1-1.svg").exists());
     let tetrahedra = format!("{}/tests/data/unstructured_cube.msh", env!("CARGO_MANIFEST_DIR"));
     let (code, message) = run(
         "stability",

@@ -111,7 +111,7 @@ fn the_other_commands_refuse_before_the_work_too() {
         ("work-precision", format!("--resume --out {out}"), "--resume"),
         ("compare", format!("--rounds 0 --out {out}"), "--rounds 0: must be at least 1"),
         ("compare", format!("--linear direct,iterative --out {out}"), "--rounds"),
-        ("pictures", format!("--series 0 --out {out}"), "level"),
+        ("pictures", format!("--level 0 --out {out}"), "level"),
         ("pictures", format!("--out {below}"), "cannot write"),
     ] {
         let output = command(name).args(options.split(' ')).output().unwrap();

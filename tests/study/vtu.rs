@@ -28,7 +28,7 @@ fn round_trip<const D: usize>(counts: [usize; D], degree: usize, cell_type: usiz
     let multiplier: Vec<f64> = (0..cells).map(|c| 1.0 / (1.0 + c as f64)).collect();
     let scratch = Scratch::new(&format!("vtu-{D}-{degree}"));
     let path = scratch.0.join("fields.vtu");
-    let file = VtuFile::new(&mesh, &u).function("sum", &|x| x.sum());
+    let file = VtuFile::new(&mesh, &u).function_in_cells("sum", |_, x| x.sum());
     file.on_cells("a<b", &multiplier).write(&path).unwrap();
 
     let grid = read(&path);
@@ -259,7 +259,7 @@ fn a_study_writes_all_levels_on_request() {
     let grid = read(scratch.0.join("made/radial-2d-wopsip-4.vtu"));
     assert_eq!(grid.array("FieldData", "level").1, "4");
     assert_eq!(grid.names("PointData"), ["obstacle", "error", "u", "recovered_gradient"]);
-    let scalars = ["bound", "multiplier", "contact", "normal_flux"];
+    let scalars = ["bound", "normal_flux", "multiplier", "contact"];
     let fields = [&scalars[..], &["flux", "gradient", "dimension"]].concat();
     assert_eq!(grid.names("CellData"), [&fields[..], &["left", "right", "bottom", "top"]].concat());
     let shares = grid.floats("CellData", "bound").into_iter().filter(|share| !share.is_nan());

@@ -18,9 +18,7 @@ use crate::asked::{MESHES, OUTPUT, PROBLEM, SCHEMES};
 use crate::constants::Constants;
 use crate::mesh_file::MeshFile;
 use crate::one_run::take_directory;
-use crate::shared::{
-    Failure, Request, check_apart, draw_solution, end_at_interrupt, print, scene, warn,
-};
+use crate::shared::{Failure, check_apart, draw_solution, end_at_interrupt, print, scene, warn};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -50,11 +48,8 @@ pub struct Options {
     level: Option<usize>,
     /// Every mesh of a refinement that follows the error bound, as for
     /// compare, from level N, by default 4
-    #[arg(help_heading = MESHES, verbatim_doc_comment, long, value_name = "GOAL|KEY=X", value_parser = adaptivity, conflicts_with = "series")]
+    #[arg(help_heading = MESHES, verbatim_doc_comment, long, value_name = "GOAL|KEY=X", value_parser = adaptivity)]
     adaptive: Option<Adaptivity>,
-    /// Also the fields of these levels as .vtu files, with a .pvd file
-    #[arg(help_heading = OUTPUT, long, value_delimiter = ',', value_name = "N[,N...]")]
-    series: Vec<usize>,
     /// Where the files go
     #[arg(help_heading = OUTPUT, long, value_name = "DIR", default_value = "target/pictures")]
     out: PathBuf,
@@ -77,49 +72,34 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
         }
     };
     check_apart(&paths, None, [&options.out])?;
-    scenes.iter().try_for_each(|scene| in_its_dimension!(scene, |scene| check(options, scene)))?;
+    let check = |scene: &AnyScene| in_its_dimension!(scene, |scene| study(options, scene).check());
+    scenes.iter().try_for_each(check).map_err(|e| e.to_string())?;
     take_directory(&options.out)?;
-    end_at_interrupt("pictures and fields that are finished are there")?;
+    end_at_interrupt("pictures that are finished are there")?;
     let draw = |scene| in_its_dimension!(scene, |scene| draw(options, &scene));
     let drawn = scenes.into_iter().map(draw).collect::<Result<Vec<bool>, _>>()?;
     Ok(drawn.iter().all(|&converged| converged))
 }
 
-/// The study of a scene, without levels.
+/// The study of the level of a scene that is drawn.
 fn study<'a, const D: usize>(options: &Options, scene: &Scene<D>) -> Study<'a, D> {
-    let study = Study::new(scene.clone()).named_scheme(&options.scheme);
+    let level = options.level.unwrap_or(match scene.domain.is_mesh() {
+        true => 0,
+        false if options.adaptive.is_some() => 4,
+        false if D == 3 => 8,
+        false => 16,
+    });
+    let study = Study::new(scene.clone()).named_scheme(&options.scheme).levels([level]);
     match options.adaptive {
         Some(adaptivity) => study.adaptive(adaptivity),
         None => study,
     }
 }
 
-/// The level that is drawn.
-fn level<const D: usize>(options: &Options, scene: &Scene<D>) -> usize {
-    options.level.unwrap_or(match scene.domain.is_mesh() {
-        true => 0,
-        false if options.adaptive.is_some() => 4,
-        false if D == 3 => 8,
-        false => 16,
-    })
-}
-
-/// Checks the studies of a scene before anything is written.
-fn check<const D: usize>(options: &Options, scene: &Scene<D>) -> Request<()> {
-    let study = || study(options, scene);
-    study().levels([level(options, scene)]).check().map_err(|e| e.to_string())?;
-    match options.series.is_empty() {
-        true => Ok(()),
-        false => study().levels(options.series.clone()).check().map_err(|e| e.to_string()),
-    }
-}
-
-/// Draws one level, and writes the fields of the series.
+/// Draws one level.
 fn draw<const D: usize>(options: &Options, scene: &Scene<D>) -> Result<bool, Failure> {
-    let study = || study(options, scene);
     let written = RefCell::new(Vec::new());
-    let level = level(options, scene);
-    let picture = study().levels([level]).each_solution(|label, level, solved| {
+    let picture = study(options, scene).each_solution(|label, level, solved| {
         let stem = file_name(&format!("{}-{label}-{level}", scene.name));
         let unit = if options.adaptive.is_some() { "step" } else { "level" };
         let mut title = format!("{}: {label}, {unit} {level}", scene.name);
@@ -129,18 +109,10 @@ fn draw<const D: usize>(options: &Options, scene: &Scene<D>) -> Result<bool, Fai
         written.borrow_mut().extend(draw_solution(&title, solved, &options.out, &stem)?);
         Ok(())
     });
-    let series = study().levels(options.series.clone()).fields_to(&options.out);
-    let series = series.fields_of_all_levels();
-    let mut rows = picture.run().map_err(Failure::of_work)?.rows;
+    let rows = picture.run().map_err(Failure::of_work)?.rows;
     if let (true, Some(row)) = (written.borrow().is_empty(), rows.first()) {
-        let message = row.message.as_deref().unwrap_or_default();
+        let (level, message) = (row.level, row.message.as_deref().unwrap_or_default());
         return Err(Failure::Work(format!("level {level}: {message}: there is nothing to draw")));
-    }
-    if !options.series.is_empty() {
-        rows.extend(series.run().map_err(Failure::of_work)?.rows);
-        let label = rows.first().map_or("", |row| &row.label);
-        let list = file_name(&format!("{}-{label}.pvd", scene.name));
-        written.borrow_mut().push(options.out.join(list));
     }
     for path in written.borrow().iter() {
         print(&format!("{}\n", path.display()))?;

@@ -14,7 +14,6 @@ use super::part::{Layers, Part};
 use super::refine::Refinement;
 use super::simplicial::Mesh;
 use crate::arrays::array_of;
-use crate::real::Point;
 
 /// A domain. All the boundary of an L-shape and of a disc is Dirichlet.
 #[derive(Clone, Debug)]
@@ -73,17 +72,6 @@ impl<const D: usize> Domain<D> {
             Domain::Box(ref domain) => (domain.upper - domain.lower).min(),
             Domain::LShape { half } => half,
             Domain::Disc { radius } => radius,
-        }
-    }
-    /// A lower bound of the distance from a point along any axis to the boundary; negative outside. On a mesh none is
-    /// computed: negative infinity.
-    pub fn depth(&self, x: &Point<D>) -> f64 {
-        let in_box = |b: &BoxDomain<D>| (x - b.lower).min().min((b.upper - x).min());
-        match self {
-            Domain::Box(domain) => in_box(domain),
-            Domain::LShape { .. } => in_box(&self.bounding_box()).min((-x[0]).max(x[1 % D])),
-            Domain::Disc { radius } => radius - x.norm(),
-            Domain::Mesh(_) => f64::NEG_INFINITY,
         }
     }
     /// Whether the boundary has a facet with this condition.

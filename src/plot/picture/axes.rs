@@ -3,7 +3,7 @@
 use super::colour::labels;
 use super::triangle::PlanePoint;
 use crate::plot::pen::{Align, Colour, PAPER, Pen, ScreenPoint};
-use crate::plot::style::{self, INK, colour, segment};
+use crate::plot::style::{INK, colour};
 
 /// Sizes of text.
 pub(crate) const TITLE: f64 = 17.0;
@@ -20,56 +20,35 @@ pub(crate) const LINE: f64 = 21.0;
 
 /// The contact set found.
 pub(crate) const CONTACT: Colour = Colour(150, 190, 222);
-/// Exact free boundary and multiplier.
-pub(crate) const EXACT: Colour = Colour(213, 94, 0);
-/// Parts without a value.
+/// The exact free boundary.
+const EXACT: Colour = Colour(213, 94, 0);
+/// What is behind.
 pub(crate) const FAINT: Colour = Colour(205, 205, 205);
 
-/// How a line is drawn.
+/// The width and the colour of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Stroke {
-    /// An edge of the mesh.
-    Mesh,
-    /// In a colour and width.
-    Coloured(Colour, f64),
-    /// Of the discrete contact set.
-    Discrete,
-    /// A piece of the boundary in contact.
-    Touching,
-    /// Exact.
-    Exact,
-    /// A function that is given.
-    Given,
-    /// The discrete solution in a graph.
-    Solution,
-    /// A curve of several, by its number, with marks at its points.
-    Curve(usize),
-}
+pub(crate) struct Stroke(pub f64, pub Colour);
 
 impl Stroke {
+    /// An edge of the mesh.
+    pub const MESH: Self = Stroke(0.5, FAINT);
+    /// The boundary of the domain.
+    pub const RIM: Self = Stroke(0.8, INK);
+    /// The boundary of the discrete contact set.
+    pub const FOUND: Self = Stroke(2.0, INK);
+    /// A piece of the boundary in contact.
+    pub const TOUCHING: Self = Stroke(7.0, CONTACT);
+    /// The exact free boundary, or the exact contact set on a boundary.
+    pub const EXACT: Self = Stroke(1.8, EXACT);
+    /// An obstacle in a graph.
+    pub const OBSTACLE: Self = Stroke(4.0, FAINT);
+    /// The discrete solution in a graph.
+    pub fn solution() -> Self {
+        Stroke(1.6, colour(0))
+    }
     /// Draws a segment.
     pub fn draw(self, pen: &mut Pen, from: ScreenPoint, to: ScreenPoint) {
-        match self {
-            Stroke::Mesh => pen.line(from, to, 0.5, FAINT),
-            Stroke::Coloured(colour, width) => pen.line(from, to, width, colour),
-            Stroke::Discrete => pen.line(from, to, 2.0, INK),
-            Stroke::Touching => pen.line(from, to, 7.0, CONTACT),
-            Stroke::Exact => pen.line(from, to, 1.8, EXACT),
-            Stroke::Given => pen.line(from, to, 4.0, FAINT),
-            Stroke::Solution => pen.line(from, to, 1.6, colour(0)),
-            Stroke::Curve(key) => {
-                segment(pen, key, from, to);
-                style::draw_mark(pen, key, from, 1.0);
-                style::draw_mark(pen, key, to, 1.0);
-            }
-        }
-    }
-
-    /// Draws the casing that separates the line from lines below.
-    pub fn draw_casing(self, pen: &mut Pen, from: ScreenPoint, to: ScreenPoint) {
-        if self == Stroke::Exact {
-            pen.line(from, to, 4.0, PAPER);
-        }
+        pen.line(from, to, self.0, self.1);
     }
 }
 
@@ -89,11 +68,11 @@ pub(crate) fn draw_mark(pen: &mut Pen, (x, y): ScreenPoint) {
 }
 
 /// Draws the lines of a legend below a position of the upper left corner.
-pub(crate) fn draw_legend(pen: &mut Pen, entries: &[(Symbol, String)], (x, y): ScreenPoint) {
+pub(crate) fn draw_legend(pen: &mut Pen, entries: &[(Symbol, &str)], (x, y): ScreenPoint) {
     const WIDTH: f64 = 26.0;
-    for (k, (symbol, label)) in entries.iter().enumerate() {
+    for (k, &(symbol, label)) in entries.iter().enumerate() {
         let middle = y + (k as f64 + 0.5) * LINE;
-        match *symbol {
+        match symbol {
             Symbol::Area(colour) => {
                 let (top, bottom) = (middle - 6.0, middle + 6.0);
                 let corners = [(x, top), (x + WIDTH, top), (x + WIDTH, bottom), (x, bottom)];
@@ -106,14 +85,11 @@ pub(crate) fn draw_legend(pen: &mut Pen, entries: &[(Symbol, String)], (x, y): S
     }
 }
 
-/// Draws the name of a quantity, divided by a power of ten other than one, centred at a position.
-pub(crate) fn draw_quantity(pen: &mut Pen, name: &str, power: i32, (x, y): ScreenPoint) {
+/// The name of a quantity whose numbers are divided by a power of ten.
+pub(crate) fn quantity(name: &str, power: i32) -> String {
     match power {
-        0 => pen.text(name, (x, y), LABEL, INK, Align::Centre),
-        _ => {
-            let exponent = power.to_string().replace('-', "\u{2212}");
-            pen.power(&format!("{name} / 10"), &exponent, (x, y), LABEL, INK, Align::Centre);
-        }
+        0 => name.to_owned(),
+        p => format!("{name} / 1e{p}").replace('-', "\u{2212}"),
     }
 }
 
@@ -145,8 +121,8 @@ impl Frame {
             pen.line((x, bottom), (x, bottom - 4.0), 0.8, INK);
             pen.text(&text, (x, bottom + 11.0), TICK, INK, Align::Centre);
         }
-        let middle = 0.5 * (left + right);
-        draw_quantity(pen, names[0], power, (middle, bottom + 30.0));
+        let below = (0.5 * (left + right), bottom + 30.0);
+        pen.text(&quantity(names[0], power), below, LABEL, INK, Align::Centre);
         let most = if self.size.1 < 120.0 { 3 } else { 5 };
         let (ticks, power) = labels(self.low[1], self.high[1], most);
         for (value, text) in ticks {
@@ -154,11 +130,8 @@ impl Frame {
             pen.line((left, y), (left + 4.0, y), 0.8, INK);
             pen.text(&text, (left - 5.0, y), TICK, INK, Align::Right);
         }
-        let name = match power {
-            0 => names[1].to_owned(),
-            p => format!("{} / 1e{}", names[1], p.to_string().replace('-', "\u{2212}")),
-        };
-        pen.text(&name, (left - LEFT + 10.0, 0.5 * (top + bottom)), LABEL, INK, Align::Upwards);
+        let beside = (left - LEFT + 10.0, 0.5 * (top + bottom));
+        pen.text(&quantity(names[1], power), beside, LABEL, INK, Align::Upwards);
         pen.outline(&[(left, top), (right, top), (right, bottom), (left, bottom)], 0.8, INK)
     }
 }

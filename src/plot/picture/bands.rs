@@ -2,7 +2,7 @@
 
 use super::axes::Stroke;
 use super::colour::Scale;
-use super::map::Map;
+use super::panel::Panel;
 use super::triangle::PlanePoint;
 use crate::arrays::array_of;
 use crate::plot::pen::PAPER;
@@ -14,20 +14,20 @@ const STRIDE: usize = 2;
 /// A point with the value of the function there.
 pub(crate) type Valued = (PlanePoint, f64);
 
-/// Fills a map with the bands of a function and its contour lines.
-pub(crate) fn shade(map: &mut Map, name: &str, triangles: &[[Valued; 3]]) {
+/// Fills a panel with the bands of a function and its contour lines.
+pub(crate) fn shade(panel: &mut Panel, triangles: &[[Valued; 3]]) {
     let values = triangles.as_flattened().iter().map(|corner| corner.1);
-    let Some(scale) = Scale::linear(name, values) else { return };
+    let Some(scale) = Scale::over(values) else { return };
     let mut fills: Vec<_> = triangles.iter().flat_map(|t| bands(&scale, t)).collect();
     // those of a colour together, which keeps files short
     fills.sort_by_key(|fill| fill.0);
-    map.fills.extend(fills.into_iter().map(|(k, area)| (scale.colour(k), area)));
+    panel.fills.extend(fills.into_iter().map(|(k, area)| (scale.colour(k), area)));
     let ink = |k: usize| if 2 * k < scale.bands() { PAPER } else { INK };
     for k in (STRIDE..scale.bands()).step_by(STRIDE) {
         let lines = triangles.iter().filter_map(|t| contour(t, scale.levels[k]));
-        map.lines.extend(lines.map(|ends| (Stroke::Coloured(ink(k), 0.6), ends)));
+        panel.lines.extend(lines.map(|ends| (Stroke(0.6, ink(k)), ends)));
     }
-    map.scale = Some(scale);
+    panel.scale = Some(scale);
 }
 
 /// The areas that paint a triangle: number of the band, corners. Each is the part on which the function is not below
@@ -45,7 +45,7 @@ pub(crate) fn bands(scale: &Scale, triangle: &[Valued; 3]) -> Vec<(usize, Vec<Pl
 }
 
 /// The segment on which the function has a value; none where it only touches.
-fn contour(triangle: &[Valued; 3], level: f64) -> Option<[PlanePoint; 2]> {
+pub(crate) fn contour(triangle: &[Valued; 3], level: f64) -> Option<[PlanePoint; 2]> {
     let mut ends = Vec::new();
     for k in 0..3 {
         let (a, b) = (triangle[k], triangle[(k + 1) % 3]);

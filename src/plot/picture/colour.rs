@@ -2,31 +2,16 @@
 
 use crate::plot::pen::Colour;
 
-/// A colour for a number from 0 to 1: from dark blue over green to pale rose, its lightness growing
-/// evenly, so that the picture reads the same in grey.
-///
-/// This is the scheme of D. A. Green, Bull. Astr. Soc. India 39 (2011), 289-295: a helix around the
-/// diagonal of the cube of colours, here of one turn, without the darkest and the lightest part.
+/// A colour for a number from 0 to 1: from dark blue to pale yellow, its lightness growing evenly, so that the picture
+/// reads the same in grey.
 pub(crate) fn colour(share: f64) -> Colour {
-    const START: f64 = 0.4;
-    const TURNS: f64 = -0.9;
-    const HUE: f64 = 1.1;
-    let lightness = 0.12 + 0.82 * share.clamp(0.0, 1.0);
-    let angle = std::f64::consts::TAU * (START / 3.0 + 1.0 + TURNS * lightness);
-    let amplitude = HUE * lightness * (1.0 - lightness) / 2.0;
-    let (sin, cos) = angle.sin_cos();
-    let channel = |a: f64, b: f64| {
-        let component = lightness + amplitude * (a * cos + b * sin);
-        (255.0 * component.clamp(0.0, 1.0)).round() as u8
-    };
-    Colour(channel(-0.14861, 1.78277), channel(-0.29227, -0.90649), channel(1.97294, 0.0))
+    let channel = |from: f64, to: f64| (255.0 * (from + share * (to - from))).round() as u8;
+    Colour(channel(0.05, 1.0), channel(0.1, 0.95), channel(0.42, 0.725))
 }
 
 /// A scale of colours: bands between levels.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Scale {
-    /// Name of the quantity.
-    pub name: String,
     /// The ends of the bands, ascending.
     pub levels: Vec<f64>,
 }
@@ -36,7 +21,7 @@ const BANDS: f64 = 10.0;
 
 impl Scale {
     /// The scale over these numbers; none if there are none.
-    pub fn linear(name: &str, values: impl Iterator<Item = f64>) -> Option<Self> {
+    pub fn over(values: impl Iterator<Item = f64>) -> Option<Self> {
         let (low, high) = range(values)?;
         let step = round_step((high - low) / BANDS);
         let levels = if high - low <= 1e-12 * high.abs().max(low.abs()) {
@@ -47,7 +32,7 @@ impl Scale {
             let last = (high / step - 1e-9).ceil();
             (0..=(last - first) as i32).map(|k| (first + f64::from(k)) * step).collect()
         };
-        Some(Scale { name: name.to_owned(), levels })
+        Some(Scale { levels })
     }
 
     /// Number of bands.

@@ -8,15 +8,11 @@
 mod axes;
 mod bands;
 mod colour;
-mod edges;
-mod graph;
 mod level_line;
 mod line;
-mod map;
 mod panel;
 mod plane;
 mod space;
-mod trace;
 mod triangle;
 
 use std::path::{Path, PathBuf};
@@ -29,11 +25,8 @@ use crate::instances::compiled;
 use crate::measure::Fields;
 use crate::mesh::{Mesh, edge_vertices};
 use crate::problem::Problem;
-use graph::Graph;
-use line::Line;
 use panel::Panel;
 use plane::Plane;
-use space::Space;
 
 /// Most lines and areas of an SVG file; with more it would be large and slow to show.
 const MOST_SHAPES: usize = 150_000;
@@ -41,8 +34,6 @@ const MOST_SHAPES: usize = 150_000;
 /// Widths of panels in one column and in two columns.
 const WIDE: f64 = 430.0;
 const NARROW: f64 = 276.0;
-/// A domain this much wider than high gets a row to itself.
-const ELONGATED: f64 = 3.0;
 const MARGIN: f64 = 8.0;
 const HEADING: f64 = 28.0;
 const GAP: f64 = 10.0;
@@ -93,17 +84,11 @@ impl Picture {
     ) -> Result<Self, Error> {
         check_fields(mesh, fields)?;
         let panels = match D {
-            1 => vec![Panel::Graph(Line::new(problem, mesh, fields).solution())],
+            1 => vec![line::solution(problem, mesh, fields)],
             2 => Plane::of_cells(problem, mesh, fields).panels(),
-            _ => Space::new(problem, mesh, fields).panels(),
+            _ => space::panels(problem, mesh, fields),
         };
         Ok(Picture { title: title.to_owned(), panels })
-    }
-
-    /// A picture of curves over one quantity: the names of the axes, and each curve's name with its points.
-    pub fn of_curves(title: &str, axes: [&str; 2], curves: &[(&str, Vec<[f64; 2]>)]) -> Self {
-        let panels = vec![Panel::Graph(Graph::of_curves(axes, curves))];
-        Picture { title: title.to_owned(), panels }
     }
 
     /// The picture as the text of an SVG file.
@@ -111,7 +96,7 @@ impl Picture {
     /// # Errors
     /// [`Error::Parameter`] if it has more shapes than such a file should.
     pub fn to_svg(&self) -> Result<String, Error> {
-        let shapes: usize = self.panels.iter().map(Panel::shapes).sum();
+        let shapes: usize = self.panels.iter().map(|p| p.fills.len() + p.lines.len()).sum();
         if shapes > MOST_SHAPES {
             let allowed = format!(
                 "an SVG file of more than {MOST_SHAPES} would be large and slow to show; choose a coarser level"
@@ -123,10 +108,7 @@ impl Picture {
         let heading = (0.5 * size.0, MARGIN + 0.4 * HEADING);
         pen.text(&self.title, heading, axes::TITLE + 1.0, INK, Align::Centre);
         for (panel, at) in panels {
-            match panel {
-                Panel::Map(map) => map.draw(&mut pen, at, width),
-                Panel::Graph(graph) => graph.draw(&mut pen, at, width),
-            }
+            panel.draw(&mut pen, at, width);
         }
         Ok(pen.finish())
     }
@@ -141,12 +123,7 @@ impl Picture {
 
     /// Panels row by row with their upper left corners, their width, and the size of the picture.
     fn layout(&self) -> (Vec<(&Panel, ScreenPoint)>, f64, (f64, f64)) {
-        let alone = self.panels.first().is_some_and(|panel| match panel {
-            Panel::Map(map) => map.high[0] - map.low[0] > ELONGATED * (map.high[1] - map.low[1]),
-            Panel::Graph(_) => true,
-        });
-        let alone = alone || self.panels.len() == 1;
-        let (columns, width) = if alone { (1, WIDE) } else { (2, NARROW) };
+        let (columns, width) = if self.panels.len() == 1 { (1, WIDE) } else { (2, NARROW) };
         let mut placed = Vec::new();
         let mut y = MARGIN + HEADING;
         for row in self.panels.chunks(columns) {

@@ -1,22 +1,39 @@
 //! The panels of a picture of a domain in the plane, and of a contact boundary in space, which is seen flat.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::axes::{CONTACT, Stroke, Symbol};
 use super::bands::shade;
-use super::edges::{Edge, edges};
 use super::level_line::{distance, level_line};
-use super::map::Map;
 use super::panel::Panel;
-use super::trace;
 use super::triangle::{PlanePoint, Triangle, View};
+use crate::arrays::{array_of, map_entries};
 use crate::measure::Fields;
 use crate::mesh::{HalfFacet, Mesh};
-use crate::plot::style::INK;
 use crate::problem::{ContactSet, Problem};
 
 /// Most triangles whose edges are drawn.
 const MOST_EDGES: usize = 1500;
+/// Pieces of a facet at which exact data are looked at.
+const PARTS: usize = 8;
+
+/// An edge, and the triangles beside it by their numbers.
+struct Edge {
+    vertices: [u32; 2],
+    sides: Vec<usize>,
+}
+
+/// All edges of triangles, each once.
+fn edges<const D: usize>(mesh: &Mesh<D>, triangles: &[Triangle]) -> Vec<Edge> {
+    let mut known: BTreeMap<[u32; 2], Vec<usize>> = BTreeMap::new();
+    for (k, triangle) in triangles.iter().enumerate() {
+        let [a, b, c] = triangle.locals.map(|local| mesh.cell(triangle.cell)[local]);
+        for vertices in [[a, b], [a, c], [b, c]] {
+            known.entry(vertices).or_default().push(k);
+        }
+    }
+    known.into_iter().map(|(vertices, sides)| Edge { vertices, sides }).collect()
+}
 
 /// The data of the panels.
 pub(crate) struct Plane<'a, const D: usize> {
@@ -68,111 +85,93 @@ impl<'a, const D: usize> Plane<'a, D> {
     /// The panels of a domain in the plane.
     pub fn panels(&self) -> Vec<Panel> {
         let contact = self.problem.is_constrained().then(|| self.contact());
-        [self.solution()].into_iter().chain(contact).map(Panel::Map).collect()
+        [self.solution()].into_iter().chain(contact).collect()
     }
 
-    fn map(&self, title: &str) -> Map {
+    fn panel(&self, title: &'static str) -> Panel {
         let places = self.triangles.iter().flat_map(|t| t.corners).map(|corner| corner.at);
-        Map { axes: self.axes.map(|k| ["x", "y", "z"][k]), ..Map::around(title, places) }
+        Panel { axes: self.axes.map(|k| ["x", "y", "z"][k]), ..Panel::around(title, places) }
     }
 
-    fn ends(&self, edge: &Edge) -> [PlanePoint; 2] {
-        self.view.places(edge.vertices)
+    /// The lines along edges.
+    fn lines(
+        &self,
+        stroke: Stroke,
+        wanted: impl Fn(&Edge) -> bool,
+    ) -> Vec<(Stroke, [PlanePoint; 2])> {
+        let wanted = self.edges.iter().filter(|edge| wanted(edge));
+        wanted.map(|edge| (stroke, self.view.places(edge.vertices))).collect()
     }
 
     /// Edges with a triangle on one side only.
-    fn rim(&self) -> impl Iterator<Item = (Stroke, [PlanePoint; 2])> {
-        let outer = self.edges.iter().filter(|e| e.sides.len() == 1);
-        outer.map(|e| (Stroke::Coloured(INK, 0.8), self.ends(e)))
+    fn rim(&self) -> Vec<(Stroke, [PlanePoint; 2])> {
+        self.lines(Stroke::RIM, |edge| edge.sides.len() == 1)
     }
 
-    fn solution(&self) -> Map {
+    fn solution(&self) -> Panel {
         let pieces = self.triangles.iter().flat_map(|t| self.view.linear_pieces(t));
-        let mut map = self.map("solution");
-        shade(&mut map, "u", &pieces.collect::<Vec<_>>());
-        map.lines.extend(self.rim());
-        map
+        let mut panel = self.panel("solution");
+        shade(&mut panel, &pieces.collect::<Vec<_>>());
+        panel.lines.extend(self.rim());
+        panel
     }
 
     /// The contact set, with the free boundary.
-    pub fn contact(&self) -> Map {
-        let mut map = self.map(match self.is_partial {
+    pub fn contact(&self) -> Panel {
+        let mut panel = self.panel(match self.is_partial {
             true => "contact set (one side)",
             false => "contact set",
         });
         let touching = self.triangles.iter().zip(&self.touches).filter(|(_, touches)| **touches);
-        map.fills.extend(touching.map(|(triangle, _)| (CONTACT, triangle.places())));
+        panel.fills.extend(touching.map(|(triangle, _)| (CONTACT, triangle.places())));
         if self.triangles.len() <= MOST_EDGES {
-            map.lines.extend(self.edges.iter().map(|e| (Stroke::Mesh, self.ends(e))));
+            panel.lines.extend(self.lines(Stroke::MESH, |_| true));
         }
-        map.lines.extend(self.rim());
-        let before = map.lines.len();
-        if D == 2 {
-            let facets = self.view.fields.discrete_contact.facets.iter();
-            map.lines.extend(facets.map(|&facet| (Stroke::Touching, self.facet_ends(facet))));
+        panel.lines.extend(self.rim());
+        let facets = self.view.fields.discrete_contact.facets.iter().filter(|_| D == 2);
+        let touching = facets.map(|&facet| self.view.places(self.facet_ends(facet)));
+        if !panel.add_lines(Stroke::TOUCHING, touching, "in contact") {
+            panel.legend.push((Symbol::Area(CONTACT), "in contact"));
         }
-        let of_contact = match map.lines.len() == before {
-            true => Symbol::Area(CONTACT),
-            false => Symbol::Line(Stroke::Touching),
+        let separates = |edge: &Edge| {
+            let any = |touches: bool| edge.sides.iter().any(|&side| self.touches[side] == touches);
+            any(true) && any(false)
         };
-        map.legend.push((of_contact, "in contact".to_owned()));
-        let found = self.edges.iter().filter(|e| self.separates_contact(e));
-        let before = map.lines.len();
-        map.lines.extend(found.map(|e| (Stroke::Discrete, self.ends(e))));
-        if map.lines.len() > before {
-            map.legend.push((Symbol::Line(Stroke::Discrete), "free boundary, found".to_owned()));
-        }
+        let found = self.lines(Stroke::FOUND, separates);
+        panel.add_lines(
+            Stroke::FOUND,
+            found.into_iter().map(|line| line.1),
+            "free boundary, found",
+        );
         if let Some(set) = self.problem.exact.as_ref().and_then(|e| e.contact.as_ref()) {
-            self.add_exact(set, &mut map);
+            self.add_exact(set, &mut panel);
         }
-        map
+        panel
     }
 
-    /// Whether an edge separates triangles in contact from others.
-    fn separates_contact(&self, edge: &Edge) -> bool {
-        let any = |touches: bool| edge.sides.iter().any(|&side| self.touches[side] == touches);
-        any(true) && any(false)
+    /// The vertices of a facet in the plane.
+    fn facet_ends(&self, (cell, local): HalfFacet) -> [u32; 2] {
+        let mut vertices = self.view.mesh.facet_vertices(cell, local);
+        array_of(|_| vertices.next().expect("a facet in the plane has two vertices"))
     }
 
-    /// The ends of a facet in the plane.
-    fn facet_ends(&self, facet: HalfFacet) -> [PlanePoint; 2] {
-        self.view.places(trace::ends(self.view.mesh, facet))
-    }
-
-    fn add_exact(&self, set: &ContactSet<D>, map: &mut Map) {
-        let inside = |x: &_| (set.indicator)(x) > 0.0;
+    fn add_exact(&self, set: &ContactSet<D>, panel: &mut Panel) {
+        let View { mesh, fields, .. } = self.view;
         if D == 3 || self.problem.has_obstacle() {
-            let at = |cell: usize, b: &[f64; 4]| inside(&self.view.mesh.point(cell, b));
-            let size = distance(map.low, map.high);
-            let mut line = level_line(&self.triangles, size, &at);
-            if line.is_empty() && D == 2 {
-                // a set without inner points
-                let points: Vec<PlanePoint> =
-                    set.free_boundary.iter().map(|x| [x[0], x[1]]).collect();
-                let near = |pair: &&[PlanePoint]| distance(pair[0], pair[1]) < 0.02 * size;
-                line = points.windows(2).filter(near).map(|pair| [pair[0], pair[1]]).collect();
-                if line.is_empty() {
-                    map.marks = points;
-                }
-            }
-            map.lines.extend(line.iter().map(|&ends| (Stroke::Exact, ends)));
-            if !line.is_empty() {
-                let exact = "free boundary, exact".to_owned();
-                map.legend.push((Symbol::Line(Stroke::Exact), exact));
-            }
-        } else {
-            let exact = trace::samples(self.view.mesh, &self.view.fields.contact_boundary)
-                .into_iter()
-                .filter(|s| inside(&(0.5 * (s[0] + s[1]))));
-            let before = map.lines.len();
-            map.lines.extend(exact.map(|s| (Stroke::Exact, s.map(|x| [x[0], x[1]]))));
-            if map.lines.len() > before {
-                map.legend.push((Symbol::Line(Stroke::Exact), "exact contact".to_owned()));
-            }
-            map.marks = set.free_boundary.iter().map(|x| [x[0], x[1]]).collect();
+            let at = |cell: usize, b: &[f64; 4]| (set.indicator)(&mesh.point(cell, b));
+            let line = level_line(&self.triangles, distance(panel.low, panel.high), &at);
+            panel.add_lines(Stroke::EXACT, line, "free boundary, exact");
+            return;
         }
-        if !map.marks.is_empty() {
-            map.legend.push((Symbol::Mark, "free boundary, exact".to_owned()));
+        let mut touching = Vec::new();
+        for &facet in &fields.contact_boundary {
+            let [a, b] = map_entries(self.facet_ends(facet), |v| mesh.vertices()[v as usize]);
+            let at = |k: usize| a + (b - a) * (k as f64 / PARTS as f64);
+            let pieces = (0..PARTS).map(|k| [at(k), at(k + 1)]);
+            let pieces = pieces.filter(|[from, to]| (set.indicator)(&(0.5 * (from + to))) > 0.0);
+            touching.extend(pieces.map(|ends| ends.map(|x| self.view.place(&x))));
         }
+        panel.add_lines(Stroke::EXACT, touching, "exact contact");
+        panel.add_marks(set.free_boundary.iter().map(|x| self.view.place(x)).collect());
     }
 }

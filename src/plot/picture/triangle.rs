@@ -102,15 +102,14 @@ impl<'a, const D: usize> View<'a, D> {
 
 /// The triangles between the corners of a triangle and the midpoints of its edges.
 pub(crate) fn quarters([a, b, c]: [Corner; 3]) -> [[Corner; 3]; 4] {
-    let [ab, bc, ca] = [between(a, b, 0.5), between(b, c, 0.5), between(c, a, 0.5)];
+    let [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
     [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
 }
 
-/// The point of a segment that has this share of the length before it, counted from the first corner.
-pub(crate) fn between(a: Corner, b: Corner, share: f64) -> Corner {
-    let mix = |x: f64, y: f64| (1.0 - share) * x + share * y;
+/// The middle of a segment.
+fn middle(a: Corner, b: Corner) -> Corner {
     Corner {
-        at: array_of(|k| mix(a.at[k], b.at[k])),
-        barycentric: array_of(|k| mix(a.barycentric[k], b.barycentric[k])),
+        at: array_of(|k| 0.5 * (a.at[k] + b.at[k])),
+        barycentric: array_of(|k| 0.5 * (a.barycentric[k] + b.barycentric[k])),
     }
 }

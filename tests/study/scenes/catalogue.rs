@@ -73,18 +73,6 @@ fn every_contrast_scene_solves_its_inequality_in_both_directions() {
     }
 }
 
-#[test]
-fn every_loaded_scene_has_admissible_data() {
-    let takers: Vec<_> = catalogue().into_iter().filter(|entry| entry.accepts.load).collect();
-    assert_eq!(takers.len(), 2);
-    for entry in takers {
-        for load in [-20.0, 0.0, 20.0] {
-            let scene = entry.make(&Parameters::new().with_load(load)).unwrap();
-            check_any(&scene).unwrap_or_else(|violation| panic!("{load}: {violation}"));
-        }
-    }
-}
-
 /// A solution, or an energy in its place.
 #[test]
 fn every_scene_says_what_it_can_be_held_to() {
