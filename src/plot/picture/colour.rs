@@ -2,11 +2,19 @@
 
 use crate::plot::pen::Colour;
 
-/// A colour for a number from 0 to 1: from dark blue to pale yellow, its lightness growing evenly, so that the picture
-/// reads the same in grey.
-pub(crate) fn colour(share: f64) -> Colour {
-    let channel = |from: f64, to: f64| (255.0 * (from + share * (to - from))).round() as u8;
-    Colour(channel(0.05, 1.0), channel(0.1, 0.95), channel(0.42, 0.725))
+/// Red, green and blue of the colours between which others are mixed, with evenly growing lightness.
+const MIXED: [[f64; 3]; 3] = [[0.05, 0.1, 0.42], [0.15, 0.72, 0.55], [1.0, 0.95, 0.725]];
+
+/// A colour for a number from 0 to 1: from dark blue over green to pale yellow. Its lightness grows evenly, so that the
+/// picture reads the same in grey.
+fn colour(share: f64) -> Colour {
+    let from = usize::from(share >= 0.5);
+    let part = 2.0 * share - from as f64;
+    let channel = |k: usize| {
+        let [low, high] = [MIXED[from][k], MIXED[from + 1][k]];
+        (255.0 * (low + part * (high - low))).round() as u8
+    };
+    Colour(channel(0), channel(1), channel(2))
 }
 
 /// A scale of colours: bands between levels.

@@ -18,15 +18,18 @@ const MOST_EDGES: usize = 1500;
 const PARTS: usize = 8;
 
 /// An edge, and the triangles beside it by their numbers.
-struct Edge {
-    vertices: [u32; 2],
-    sides: Vec<usize>,
+pub(crate) struct Edge {
+    pub vertices: [u32; 2],
+    pub sides: Vec<usize>,
 }
 
 /// All edges of triangles, each once.
-fn edges<const D: usize>(mesh: &Mesh<D>, triangles: &[Triangle]) -> Vec<Edge> {
+pub(crate) fn edges<const D: usize>(
+    mesh: &Mesh<D>,
+    triangles: impl Iterator<Item = Triangle>,
+) -> Vec<Edge> {
     let mut known: BTreeMap<[u32; 2], Vec<usize>> = BTreeMap::new();
-    for (k, triangle) in triangles.iter().enumerate() {
+    for (k, triangle) in triangles.enumerate() {
         let [a, b, c] = triangle.locals.map(|local| mesh.cell(triangle.cell)[local]);
         for vertices in [[a, b], [a, c], [b, c]] {
             known.entry(vertices).or_default().push(k);
@@ -56,7 +59,7 @@ impl<'a, const D: usize> Plane<'a, D> {
         let triangles: Vec<Triangle> = (0..mesh.n_cells()).map(|cell| view.cell(cell)).collect();
         let mut touches = vec![false; mesh.n_cells()];
         fields.discrete_contact.cells.iter().for_each(|&cell| touches[cell] = true);
-        let edges = edges(mesh, &triangles);
+        let edges = edges(mesh, triangles.iter().copied());
         Plane { problem, axes, edges, view, triangles, touches, is_partial: false }
     }
 
@@ -78,7 +81,7 @@ impl<'a, const D: usize> Plane<'a, D> {
         let triangles: Vec<Triangle> = facets.iter().map(|&(c, k)| view.facet(c, k)).collect();
         let touching: BTreeSet<&HalfFacet> = fields.discrete_contact.facets.iter().collect();
         let touches = facets.iter().map(|facet| touching.contains(facet)).collect();
-        let edges = edges(mesh, &triangles);
+        let edges = edges(mesh, triangles.iter().copied());
         Plane { problem, axes, edges, view, triangles, touches, is_partial }
     }
 

@@ -1,12 +1,12 @@
 //! The panels of a picture of a domain in space: facets painted from back to front, with the third axis upwards, and the
 //! contact side seen flat.
 
-use super::axes::{CONTACT, FAINT, Symbol};
+use super::axes::{CONTACT, Stroke, Symbol};
 use super::bands::bands;
 use super::colour::Scale;
 use super::panel::Panel;
-use super::plane::Plane;
-use super::triangle::{Triangle, View};
+use super::plane::{Plane, edges};
+use super::triangle::{PlanePoint, Triangle, View};
 use crate::arrays::{array_of, map_entries};
 use crate::measure::Fields;
 use crate::mesh::{BoundaryCondition, HalfFacet, Mesh, Neighbour, Neighbours, cross};
@@ -16,6 +16,10 @@ use crate::real::Point;
 
 /// Where the viewer stands, unless that hides the contact boundary.
 const TOWARDS_VIEWER: [f64; 3] = [0.5, -0.8, 0.45];
+/// Facets whose normals have a smaller cosine than this meet at an edge that is drawn.
+const SHARP: f64 = 0.8;
+/// The sides of a domain behind what is in contact.
+const BEHIND: Colour = Colour(225, 225, 225);
 
 /// A facet of a surface.
 struct Facet<const D: usize> {
@@ -120,6 +124,7 @@ impl<const D: usize> Space<'_, D> {
             let areas = pieces.iter().flat_map(|piece| bands(scale, piece));
             panel.fills = areas.map(|(band, area)| (scale.colour(band), area)).collect();
         }
+        panel.lines = self.outline(&surface);
         panel
     }
 
@@ -132,20 +137,31 @@ impl<const D: usize> Space<'_, D> {
         let title = if found.is_empty() { "no cell is in contact" } else { "contact set" };
         let mut panel = self.panel(title, &walls);
         let behind = walls.iter().filter(|facet| !self.is_seen(facet));
-        panel.fills.extend(behind.map(|facet| (FAINT, facet.triangle.places())));
+        panel.fills.extend(behind.map(|f| (self.lit(BEHIND, &-f.normal), f.triangle.places())));
         let surface = self.surface(&|cell| touches[cell]);
         let seen = surface.iter().filter(|facet| self.is_seen(facet));
-        panel.fills.extend(seen.map(|f| (self.lit(&f.normal), f.triangle.places())));
+        panel.fills.extend(seen.map(|f| (self.lit(CONTACT, &f.normal), f.triangle.places())));
         panel.legend.push((Symbol::Area(CONTACT), "in contact"));
         panel
     }
 
-    /// The colour of a contact facet under a light from above at the left.
-    fn lit(&self, normal: &Point<D>) -> Colour {
+    /// The edges at which seen facets meet others in an angle.
+    fn outline(&self, surface: &[Facet<D>]) -> Vec<(Stroke, [PlanePoint; 2])> {
+        let mut edges = edges(self.view.mesh, surface.iter().map(|facet| facet.triangle));
+        edges.retain(|edge| {
+            let sides = || edge.sides.iter().map(|&side| &surface[side]);
+            let is_flat = sides().is_sorted_by(|a, b| a.normal.dot(&b.normal) > SHARP);
+            !is_flat && sides().any(|facet| self.is_seen(facet))
+        });
+        edges.iter().map(|edge| (Stroke::RIM, self.view.places(edge.vertices))).collect()
+    }
+
+    /// A colour on a side with this normal under a light from above at the left.
+    fn lit(&self, colour: Colour, normal: &Point<D>) -> Colour {
         let [right, up] = self.view.axes;
         let light = (self.towards_viewer + up * 0.9 - right * 0.5).normalize();
         let share = 0.6 + 0.45 * normal.dot(&light).max(0.0);
         let channel = |c: u8| (f64::from(c) * share).min(255.0).round() as u8;
-        Colour(channel(CONTACT.0), channel(CONTACT.1), channel(CONTACT.2))
+        Colour(channel(colour.0), channel(colour.1), channel(colour.2))
     }
 }
