@@ -56,6 +56,7 @@ pub fn catalogue() -> Vec<Entry> {
         Entry::new(|| signorini_smooth(3)),
         Entry::new(|| signorini_smooth(4)),
         Entry::new(signorini_biactive_2d),
+        Entry::new(signorini_halves_2d),
         Entry::new(hertz_2d),
         Entry::new(signorini_two_2d),
         Entry::with_contrast(1e4, signorini_layers_2d),

@@ -58,7 +58,9 @@ pub use signorini::{
 };
 pub use signorini_harmonic::signorini_harmonic;
 pub use signorini_layers::signorini_layers_2d;
-pub use signorini_smooth::{signorini_biactive_2d, signorini_disc, signorini_smooth};
+pub use signorini_smooth::{
+    signorini_biactive_2d, signorini_disc, signorini_halves_2d, signorini_smooth,
+};
 pub use signorini_string::{
     signorini_closed_1d, signorini_grazing_1d, signorini_open_1d, signorini_reaction_1d,
 };

@@ -5,7 +5,7 @@ use super::dual_number::{DualNumber, positive_power};
 use super::free_boundary;
 use super::scene::{Scene, zero_gap};
 use crate::mesh::BoxDomain;
-use crate::problem::Exact;
+use crate::problem::{Datum, Exact, Problem};
 use crate::real::Point;
 use crate::scheme::Regularity;
 
@@ -21,6 +21,25 @@ pub fn signorini_smooth(k: i32) -> Scene<2> {
     Scene::new(format!("signorini-smooth{k}-2d"), BoxDomain::above_contact(), problem)
         .summary("Signorini, gap and pressure vanish with the order in the name")
         .regularity(Regularity::new(f64::from(k) + 0.5))
+}
+
+/// `signorini-smooth2-2d` with a region on each side of the plane `x = 0`, where the load changes. Its data are
+/// polynomials in each region, so that bounds on errors are guaranteed.
+pub fn signorini_halves_2d() -> Scene<2> {
+    let exact = wedge(2, 0.0).with_contact(|x| -x[0], vec![Point::zeros()]);
+    let square = |x: &Point<2>| DualNumber::along(0, [x[0] * x[0], 2.0 * x[0], 2.0]);
+    let pressed = move |x: &Point<2>| {
+        (DualNumber::bubble(x) * square(x) * DualNumber::along(1, [x[1], 1.0, 0.0])).laplacian
+    };
+    let open = move |x: &Point<2>| -(DualNumber::bubble(x) * square(x)).laplacian;
+    let problem = Problem { dirichlet: Datum::Constant(0.0).into(), ..zero_gap() }
+        .source_in("pressed", Datum::polynomial(5, pressed))
+        .source_in("open", Datum::polynomial(4, open))
+        .solved_by(exact);
+    let halves = BoxDomain::above_contact().in_halves(["pressed", "open"]);
+    Scene::new("signorini-halves-2d", halves, problem)
+        .summary("Signorini, left with order 2 between two regions; polynomial data")
+        .regularity(Regularity::new(2.5))
 }
 
 /// Contact without pressure on a segment: on `|x| <= 1/4` both gap and pressure vanish.

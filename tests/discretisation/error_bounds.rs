@@ -437,7 +437,8 @@ fn what_is_proven_and_what_has_no_bound() {
     assert!(matches!(unproven(&negative, &ConformingP1), Err(NoBound::NegativeReaction)));
 }
 
-/// On the line data on facets are numbers: scenes that state constant data have guaranteed bounds. So does the hill.
+/// On the line data on facets are numbers: scenes that state constant data have guaranteed bounds. So do the scenes
+/// whose data are polynomials, over the mesh or in its regions.
 #[test]
 fn a_scene_with_polynomial_data_has_a_guaranteed_bound() {
     fn check<const D: usize>(scene: Scene<D>) {
@@ -456,6 +457,7 @@ fn a_scene_with_polynomial_data_has_a_guaranteed_bound() {
     check(scenes::signorini_open_1d());
     check(scenes::signorini_closed_1d());
     check(scenes::hill::<2>());
+    check(scenes::signorini_halves_2d());
 }
 
 /// Dirichlet data of two groups that differ where the groups meet belong to no function of finite energy.

@@ -27,13 +27,23 @@ pub struct BoxDomain<const D: usize> {
     pub upper: Point<D>,
     /// Condition on the sides `x_k = lower_k` and `x_k = upper_k`, for each axis `k`.
     pub sides: [[BoundaryCondition; 2]; D],
+    /// Names of the regions on both sides of the plane that halves the first axis; none for one region
+    /// without a name.
+    pub halves: Option<[&'static str; 2]>,
 }
 
 impl<const D: usize> BoxDomain<D> {
     /// The box between two corners, with the condition on the sides `x_k = lower_k` and `x_k = upper_k`
     /// for each axis `k`.
     pub fn new(lower: Point<D>, upper: Point<D>, sides: [[BoundaryCondition; 2]; D]) -> Self {
-        Self { lower, upper, sides }
+        Self { lower, upper, sides, halves: None }
+    }
+    /// Names the regions on both sides of the plane that halves the first axis. Meshes then have an even
+    /// number of subdivisions along it.
+    #[must_use]
+    pub fn in_halves(mut self, names: [&'static str; 2]) -> Self {
+        self.halves = Some(names);
+        self
     }
     /// The box with Dirichlet data on every side.
     pub fn dirichlet(lower: Point<D>, upper: Point<D>) -> Self {
@@ -95,11 +105,16 @@ impl<const D: usize> Mesh<D> {
     /// its diagonal from the lowest to the highest corner (Kuhn).
     ///
     /// # Errors
-    /// `MeshErrorKind::Parameter` for a count of zero or a box without volume, `MeshErrorKind::TooLarge`.
+    /// `MeshErrorKind::Parameter` for a count of zero, a box without volume or halves of an odd number of
+    /// small boxes, `MeshErrorKind::TooLarge`.
     pub fn kuhn_box(domain: &BoxDomain<D>, counts: [usize; D]) -> Result<Self, MeshError> {
         if counts.contains(&0) {
             let (value, allowed) = (format!("{counts:?}"), "at least one along each axis");
             return Err(MeshError::parameter("subdivisions", value, allowed));
+        }
+        if domain.halves.is_some() && counts[0] % 2 == 1 {
+            let allowed = "even along the first axis, whose halves are regions";
+            return Err(MeshError::parameter("subdivisions", counts[0], allowed));
         }
         for k in 0..D {
             let side = domain.upper[k] - domain.lower[k];
@@ -133,9 +148,16 @@ impl<const D: usize> Mesh<D> {
             condition: Some(domain.sides[k / 2][k % 2]),
         };
         let sides = (0..2 * D).map(side).collect();
-        let groups = Groups { regions: vec![Vec::new()], boundary: sides, inside: Vec::new() };
-        let groups = Arc::new(groups);
-        let cell_regions = Vec::new();
+        let (regions, cell_regions) = match domain.halves {
+            None => (vec![Vec::new()], Vec::new()),
+            Some(names) => {
+                let n_cells = cells.len() / (D + 1);
+                let half =
+                    |cell: usize| u16::from(2 * (cell / paths.len() % counts[0]) >= counts[0]);
+                (names.map(|name| vec![name.to_owned()]).to_vec(), (0..n_cells).map(half).collect())
+            }
+        };
+        let groups = Arc::new(Groups { regions, boundary: sides, inside: Vec::new() });
         let (whole, shapes) = (None, Shapes::default());
         Ok(Self { vertices, cells, boundary, is_supported, groups, cell_regions, whole, shapes })
     }

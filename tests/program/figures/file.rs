@@ -16,8 +16,15 @@ const SHARES: [f64; 3] = [1e-9, 1e-6, 1e-3];
 const LARGEST_DIFFERENCE: f64 = 2.0;
 
 /// Scenes in which gap and multiplier vanish together on a set: rounding decides which unknowns are active there.
-const DEGENERATE: [&str; 6] =
-    ["biactive", "degenerate", "grazing", "oscillating", "signorini-smooth", "pyramid-full"];
+const DEGENERATE: [&str; 7] = [
+    "biactive",
+    "degenerate",
+    "grazing",
+    "oscillating",
+    "signorini-smooth",
+    "signorini-halves",
+    "pyramid-full",
+];
 
 /// The figures of rows by request, scene, scheme and level.
 #[derive(Clone, Default)]

@@ -50,7 +50,8 @@ const OBSTACLES_IN_THE_PLANE: &str = "ridge-2d,radial-2d,radial-quarter-2d,polyn
     biactive-half-2d,biactive-ring-2d,lshape-2d,cone-2d,pyramid-full-2d,degenerate2-2d,degenerate3-2d,degenerate4-2d";
 const OTHERS_IN_THE_PLANE: &str = "contrast-2d,contrast-disc-2d,spiral-2d,torsion-2d,pyramid-2d,signorini-harmonic-2d,\
     signorini-2d,signorini-shifted-2d,signorini-irrational-2d,signorini-smooth2-2d,signorini-smooth3-2d,\
-    signorini-smooth4-2d,signorini-biactive-2d,hertz-2d,signorini-two-2d,signorini-layers-2d,signorini-sine-2d";
+    signorini-smooth4-2d,signorini-biactive-2d,signorini-halves-2d,hertz-2d,signorini-two-2d,signorini-layers-2d,\
+    signorini-sine-2d";
 const OBSTACLES_IN_SPACE: &str = "ridge-3d,radial-3d,polynomial-3d,hill-3d,ball-3d,cone-3d";
 const CONTACT_IN_SPACE: &str =
     "signorini-harmonic-3d,signorini-line-3d,signorini-disc2-3d,signorini-disc3-3d,hertz-3d";

@@ -46,8 +46,8 @@ const NAMES: &str = "
     contrast-disc-2d signorini-reaction-1d signorini-open-1d signorini-closed-1d
     signorini-grazing-1d signorini-harmonic-2d signorini-2d signorini-shifted-2d
     signorini-irrational-2d signorini-smooth2-2d signorini-smooth3-2d signorini-smooth4-2d
-    signorini-biactive-2d hertz-2d signorini-two-2d signorini-harmonic-3d signorini-line-3d
-    signorini-disc2-3d signorini-disc3-3d hertz-3d signorini-layers-2d spiral-2d
+    signorini-biactive-2d signorini-halves-2d hertz-2d signorini-two-2d signorini-harmonic-3d
+    signorini-line-3d signorini-disc2-3d signorini-disc3-3d hertz-3d signorini-layers-2d spiral-2d
     signorini-sine-2d torsion-2d pyramid-2d friction-1d friction-both-1d friction-2d friction-3d
 ";
 

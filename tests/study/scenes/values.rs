@@ -6,9 +6,10 @@ use unilateral::scenes::{
     Scene, ball_2d, ball_3d, biactive_half_2d, biactive_ring_2d, bilateral_1d, cone, contrast,
     contrast_disc_2d, degenerate, disc_2d, hertz_2d, hertz_3d, hill, icelike_1d, lshape_2d,
     oscillating_1d, parabola_1d, polynomial, radial_quarter_2d, signorini_2d,
-    signorini_biactive_2d, signorini_closed_1d, signorini_disc, signorini_harmonic,
-    signorini_irrational_2d, signorini_layers_2d, signorini_line_3d, signorini_open_1d,
-    signorini_reaction_1d, signorini_shifted_2d, signorini_smooth, signorini_two_2d,
+    signorini_biactive_2d, signorini_closed_1d, signorini_disc, signorini_halves_2d,
+    signorini_harmonic, signorini_irrational_2d, signorini_layers_2d, signorini_line_3d,
+    signorini_open_1d, signorini_reaction_1d, signorini_shifted_2d, signorini_smooth,
+    signorini_two_2d,
 };
 
 use super::{assert_close, exact, gradient, source, value};
@@ -34,6 +35,10 @@ fn signorini_scenes_in_the_plane_take_their_check_values() {
     check(&signorini_smooth(3), &table, 6e-9);
     let table = [(a, 0.001911, -1.41925), (b, -0.0150528, -0.21792)];
     check(&signorini_biactive_2d(), &table, 6e-9);
+    let halves = signorini_halves_2d();
+    assert_close(value(&halves, a), 0.91 * 0.84 * 0.09, 1e-15);
+    assert_close(value(&halves, b), -0.64 * 0.96 * 0.2 * 0.36, 1e-15);
+    assert_close(multiplier(&halves, [-0.6, 0.0]), 0.64 * 0.36, 1e-15);
     let table = [(a, -0.22768518, -1.7533293), (b, 0.03536783, 1.72599565)];
     check(&signorini_two_2d(), &table, 6e-9);
 }

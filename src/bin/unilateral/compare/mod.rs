@@ -108,7 +108,7 @@ impl Chosen {
         let warn = |warning| watcher.warn_once(warning);
         let default = match options.rounds {
             Some(_) => &rounds::SCENES[..],
-            None => &["radial-2d", "signorini-2d"],
+            None => &["hill-2d", "signorini-halves-2d"],
         };
         let FoundScenes { scenes, fingerprints, paths } = options.asked.scenes(default, &warn)?;
         Ok(Self { scenes, schemes, solvers, fingerprints, inputs: paths })
