@@ -42,32 +42,11 @@ impl<T: Real> Bound<T> {
     }
     /// The projection of `x` onto the admissible values.
     pub fn nearest(&self, x: T) -> T {
-        match *self {
-            Bound::Free => x,
-            Bound::Fixed(v) => v,
-            Bound::Lower(l) => {
-                if x < l {
-                    l
-                } else {
-                    x
-                }
-            }
-            Bound::Upper(u) => {
-                if x > u {
-                    u
-                } else {
-                    x
-                }
-            }
-            Bound::Both(l, u) => {
-                if x < l {
-                    l
-                } else if x > u {
-                    u
-                } else {
-                    x
-                }
-            }
+        match (*self, self.lower(), self.upper()) {
+            (Bound::Fixed(v), ..) => v,
+            (_, Some(l), _) if x < l => l,
+            (_, _, Some(u)) if x > u => u,
+            _ => x,
         }
     }
     /// The ends of the interval of admissible values, infinite where there is no bound.

@@ -5,7 +5,6 @@ use super::inequality::Inequality;
 use super::kink::Kink;
 use super::matrix::SparseMatrix;
 use super::penalised_matrix::PenalisedMatrix;
-use super::rectangular_matrix::RectangularMatrix;
 use crate::memory::in_large_pages;
 use crate::parallel::vectors::collect;
 use crate::real::Real;
@@ -21,18 +20,6 @@ impl SparseMatrix<f64> {
     pub fn in_precision<T: Real>(&self) -> SparseMatrix<T> {
         SparseMatrix {
             row_starts: self.row_starts.clone(),
-            columns: self.columns.clone(),
-            values: rounded(&self.values),
-        }
-    }
-}
-
-impl RectangularMatrix<f64> {
-    /// The matrix with every entry rounded once.
-    #[must_use]
-    pub fn in_precision<T: Real>(&self) -> RectangularMatrix<T> {
-        RectangularMatrix {
-            starts: self.starts.clone(),
             columns: self.columns.clone(),
             values: rounded(&self.values),
         }

@@ -201,17 +201,14 @@ impl<T: Real> Inequality<T> {
     /// # Panics
     /// If `u` or `r` is shorter than the number of unknowns.
     pub fn residual_f64(&self, u: &[T], r: &mut [f64]) {
-        match &self.penalised {
-            Some(penalised) => penalised.residual(&self.load, |i| u[i].to_f64(), r),
-            None => self.matrix.residual_f64(&self.load, u, r),
-        }
+        self.residual_of(|i| u[i].to_f64(), r);
     }
     /// The residual `r = b - A u` in `f64` for values `u(i)` in `f64`, of the penalised matrix where
     /// there is one.
     ///
     /// # Panics
     /// If `r` is shorter than the number of unknowns.
-    pub fn residual_of(&self, u: &(dyn Fn(usize) -> f64 + Sync), r: &mut [f64]) {
+    pub fn residual_of(&self, u: impl Fn(usize) -> f64 + Sync, r: &mut [f64]) {
         match &self.penalised {
             Some(penalised) => penalised.residual(&self.load, u, r),
             None => self.matrix.residual_of(&self.load, u, r),

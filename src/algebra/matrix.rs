@@ -1,10 +1,21 @@
-//! Square sparse matrices in compressed sparse rows.
+//! Sparse matrices in compressed sparse rows.
 
+use std::ops::Range;
+
+use super::NO_INDEX;
 use crate::parallel::grouping::group_by_key;
-use crate::parallel::vectors::{all, collect, for_each_chunk};
+use crate::parallel::map_groups;
+use crate::parallel::vectors::{all, collect, concat, for_each_chunk, positions, starts};
 use crate::real::Real;
 
-/// A square sparse matrix in compressed sparse rows; columns ascend strictly in each row.
+/// Rows that one task computes at least.
+const ROWS_PER_TASK: usize = 1024;
+
+/// Most tasks of a product: the sum of each task has an index for every column.
+const MAX_TASKS: usize = 32;
+
+/// A sparse matrix in compressed sparse rows; columns ascend strictly in each row. It is square but inside of this
+/// library, where some methods serve rectangular ones too.
 ///
 /// # Panics
 /// A method that takes the number of a row panics if there is no such row, one that takes a vector if that is shorter
@@ -42,6 +53,12 @@ impl<T> SparseMatrix<T> {
 }
 
 impl<T: Real> SparseMatrix<T> {
+    /// The diagonal matrix with these entries.
+    #[must_use]
+    pub fn from_diagonal(values: Vec<T>) -> Self {
+        let n = values.len() as u32;
+        Self { row_starts: (0..=n).collect(), columns: (0..n).collect(), values }
+    }
     /// Whether the three vectors describe a square matrix: row starts ascend, columns ascend strictly
     /// in each row and are less than the size, and every entry has a value.
     pub fn is_well_formed(&self) -> bool {
@@ -100,15 +117,13 @@ impl<T: Real> SparseMatrix<T> {
     /// # Panics
     /// If `b` or `x` is shorter than `r`, or `r` is longer than the matrix has rows.
     pub fn residual_f64(&self, b: &[T], x: &[T], r: &mut [f64]) {
-        for_each_chunk(r, |range, r| {
-            r.iter_mut().zip(range).for_each(|(r, i)| *r = b[i].to_f64() - self.row_dot_f64(i, x));
-        });
+        self.residual_of(b, |j| x[j].to_f64(), r);
     }
     /// The residual `r = b - A x` in `f64` for values `x(j)` in `f64`.
     ///
     /// # Panics
     /// If `b` is shorter than `r`, or `r` is longer than the matrix has rows.
-    pub fn residual_of(&self, b: &[T], x: &(dyn Fn(usize) -> f64 + Sync), r: &mut [f64]) {
+    pub fn residual_of(&self, b: &[T], x: impl Fn(usize) -> f64 + Sync, r: &mut [f64]) {
         for_each_chunk(r, |range, r| {
             for (r, i) in r.iter_mut().zip(range) {
                 let (columns, values) = self.row(i);
@@ -128,18 +143,22 @@ impl<T: Real> SparseMatrix<T> {
         });
         r
     }
-    /// The transpose `A^T`.
+    /// The transpose of a matrix with this number of columns.
     #[must_use]
-    pub fn transpose(&self) -> Self {
-        let (row_starts, columns, values) =
-            transpose((&self.row_starts, &self.columns, &self.values), self.size());
+    pub fn transpose(&self, n_columns: usize) -> Self {
+        let (row_starts, entries) = group_by_key(self.size(), n_columns, |i, put| {
+            let (columns, values) = self.row(i);
+            columns.iter().zip(values).for_each(|(&j, &a)| put(j, (i as u32, a)));
+        });
+        let columns = collect(entries.len(), |k| entries[k].0);
+        let values = collect(entries.len(), |k| entries[k].1);
         Self { row_starts, columns, values }
     }
     /// The symmetric part `(A + A^T) / 2`, symmetric to the last bit. Its pattern is the union of
     /// those of `A` and `A^T`.
     #[must_use]
     pub fn symmetric_part(&self) -> Self {
-        let transpose = self.transpose();
+        let transpose = self.transpose(self.size());
         let half = T::lit(0.5);
         let mut part = Self {
             row_starts: Vec::with_capacity(self.row_starts.len()),
@@ -169,24 +188,70 @@ impl<T: Real> SparseMatrix<T> {
     }
 }
 
+/// Matrices made row by row. Their columns may be in any order.
+impl<T: Real> SparseMatrix<T> {
+    /// The rows of a range, which `add` appends to columns and values one by one.
+    pub(crate) fn by_rows(
+        range: Range<usize>,
+        mut add: impl FnMut(usize, &mut Vec<u32>, &mut Vec<T>),
+    ) -> Self {
+        let (mut row_starts, mut columns, mut values) = (vec![0], Vec::new(), Vec::new());
+        for row in range {
+            add(row, &mut columns, &mut values);
+            row_starts.push(columns.len() as u32);
+        }
+        Self { row_starts, columns, values }
+    }
+
+    /// The rows that `work` computes for ranges of rows, one task each; one range where there is one thread.
+    pub(crate) fn by_groups(n_rows: usize, work: &(dyn Fn(Range<usize>) -> Self + Sync)) -> Self {
+        let length = match rayon::current_num_threads() {
+            1 => n_rows,
+            _ => ROWS_PER_TASK.max(n_rows / MAX_TASKS),
+        };
+        if n_rows <= length {
+            return work(0..n_rows);
+        }
+        let groups = map_groups(n_rows, length, work);
+        let ends: Vec<&[u32]> = groups.iter().map(|group| &group.row_starts[1..]).collect();
+        let row_starts = starts(&ends);
+        let (columns, values): (Vec<_>, Vec<_>) =
+            groups.into_iter().map(|group| (group.columns, group.values)).unzip();
+        Self { row_starts, columns: concat(columns), values: concat(values) }
+    }
+
+    /// The submatrix `A_II` for an ascending index set `I = free`: its row and column `k` are those of `free[k]` in
+    /// `A`.
+    pub(crate) fn submatrix(&self, free: &[u32]) -> Self {
+        // columns that are not in the submatrix have the position `NO_INDEX`
+        self.extract(free, |_| NO_INDEX - 1)
+    }
+
+    /// The lower triangle of the submatrix `A_II`, diagonal included.
+    pub(crate) fn lower_triangle(&self, free: &[u32]) -> Self {
+        self.extract(free, |k| k as u32)
+    }
+
+    /// The entries of each row `k` of the submatrix up to column `last(k)`.
+    fn extract(&self, free: &[u32], last: impl Fn(usize) -> u32 + Sync) -> Self {
+        let position = positions(self.size(), free);
+        Self::by_groups(free.len(), &|range| {
+            Self::by_rows(range, |k, columns, values| {
+                let (neighbours, entries) = self.row(free[k] as usize);
+                for (&j, &a) in neighbours.iter().zip(entries) {
+                    let j = position[j as usize];
+                    if j <= last(k) {
+                        columns.push(j);
+                        values.push(a);
+                    }
+                }
+            })
+        })
+    }
+}
+
 /// Sorts the entries of a row by their columns; generic over the scalar alone, so that the sorting code
 /// is not compiled for every caller.
 pub(crate) fn sort_by_column<T: Real>(row: &mut [(u32, T)]) {
     row.sort_unstable_by_key(|&(column, _)| column);
-}
-
-/// The transpose of a matrix with `n_columns` columns, both given by row starts, columns and values.
-pub(crate) fn transpose<T: Real>(
-    (starts, columns, values): (&[u32], &[u32], &[T]),
-    n_columns: usize,
-) -> (Vec<u32>, Vec<u32>, Vec<T>) {
-    let n_rows = starts.len().saturating_sub(1);
-    let (starts, entries) = group_by_key(n_rows, n_columns, |i, put| {
-        for k in starts[i] as usize..starts[i + 1] as usize {
-            put(columns[k], (i as u32, values[k]));
-        }
-    });
-    let columns = collect(entries.len(), |k| entries[k].0);
-    let values = collect(entries.len(), |k| entries[k].1);
-    (starts, columns, values)
 }

@@ -1,8 +1,7 @@
 //! Algebraic data: sparse and dense matrices, and the variational inequality that every solver and
 //! exporter takes. Independent of mesh, dimension and scheme.
 //!
-//! `matrix`: compressed sparse rows. `rectangular_matrix`: prolongations in compressed sparse
-//! rows, `P^T A P`, and submatrices. `penalised_matrix`: `K + M^T S M`. `side_penalties`: `M^T S M` of
+//! `matrix`: compressed sparse rows. `galerkin_product`: `P^T A P`. `penalised_matrix`: `K + M^T S M`. `side_penalties`: `M^T S M` of
 //! discontinuous linear functions. `dense`: small dense matrices.
 //! `dirichlet_energy`: the terms of an energy that weak Dirichlet data determine.
 //! `distribution`: unknowns in several processes. `free_body`: bodies that bounds alone hold. `bound`: bounds of an
@@ -14,6 +13,7 @@ pub(crate) mod dense;
 mod dirichlet_energy;
 mod distribution;
 mod free_body;
+mod galerkin_product;
 mod in_precision;
 mod inequality;
 mod jumps;
@@ -21,7 +21,6 @@ mod kink;
 mod matrix;
 mod mean_jumps;
 mod penalised_matrix;
-mod rectangular_matrix;
 mod side_penalties;
 
 pub use bound::{Bound, Contact};
@@ -30,6 +29,7 @@ pub use distribution::Distribution;
 pub(crate) use distribution::{OnePart, any_part, sum_over_parts};
 pub use free_body::FreeBody;
 pub(crate) use free_body::{RESULTANT_ROUNDING, Sum};
+pub(crate) use galerkin_product::{SparseSum, galerkin_product};
 pub(crate) use in_precision::rounded;
 pub use inequality::{DofLocation, Inequality, Start};
 pub use jumps::{JumpSide, JumpTerm, Jumps};
@@ -38,7 +38,6 @@ pub use matrix::SparseMatrix;
 pub(crate) use matrix::sort_by_column;
 pub use mean_jumps::MeanJumps;
 pub use penalised_matrix::PenalisedMatrix;
-pub(crate) use rectangular_matrix::{RectangularMatrix, SparseSum, galerkin_product};
 pub(crate) use side_penalties::SidePenalties;
 
 /// Marks the absence of an index in arrays of `u32` indices.

@@ -7,9 +7,9 @@ use std::borrow::Cow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::algebra::dense::invert_positive_definite;
-use crate::algebra::{DofLocation, RectangularMatrix, SparseMatrix};
-use crate::linear::precondition::{rows_of_means, unknowns_per_cell};
-use crate::linear::{FactorError, Preconditioner};
+use crate::algebra::{DofLocation, SparseMatrix};
+use crate::linear::precondition::unknowns_per_cell;
+use crate::linear::{FactorError, Preconditioner, Prolongation};
 use crate::parallel::vectors::{for_each_chunk, for_each_chunk_of_groups, zeros};
 
 /// The preconditioner `D^-1 + P C P^T` of a symmetric matrix `A` on a part of a mesh.
@@ -66,9 +66,7 @@ pub(super) struct VertexCorrection<'a> {
     /// The vertices with Dirichlet data.
     dirichlet: Cow<'a, [bool]>,
     /// `P`: an unknown is the mean of the values at the vertices of its location.
-    interpolation: RectangularMatrix<f64>,
-    /// `P^T`.
-    transpose: RectangularMatrix<f64>,
+    prolongation: Prolongation,
     /// Whether a vertex is fixed; see [`VertexCorrection::set_fixed`].
     fixed_vertices: Vec<bool>,
     /// Workspace: `P^T r` and `C P^T r`, zero at fixed vertices.
@@ -85,21 +83,19 @@ impl<'a> VertexCorrection<'a> {
         locations: &[DofLocation],
     ) -> Option<Self> {
         let n = dirichlet.len();
-        let interpolation = rows_of_means(locations, n)?;
-        let transpose = interpolation.transpose(n);
+        let prolongation = Prolongation::to_element(locations, n)?;
         let (residual, values) = (zeros(n), zeros(n));
         let fixed_vertices = vec![false; n];
-        Some(Self { coarse, dirichlet, interpolation, transpose, fixed_vertices, residual, values })
+        Some(Self { coarse, dirichlet, prolongation, fixed_vertices, residual, values })
     }
 
     /// Sets the fixed unknowns, and the fixed vertices: those with Dirichlet data, and those in the
     /// location of a fixed unknown.
     pub fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
-        let (transpose, dirichlet) = (&self.transpose, &self.dirichlet);
+        let (prolongation, dirichlet) = (&self.prolongation, &self.dirichlet);
         for_each_chunk(&mut self.fixed_vertices, |range, out| {
             for (v, out) in range.zip(out) {
-                let is_fixed = |&i: &u32| fixed[i as usize];
-                *out = dirichlet[v] || transpose.row(v).0.iter().any(is_fixed);
+                *out = dirichlet[v] || prolongation.children(v).any(|(i, _)| fixed[i]);
             }
         });
         self.coarse.set_fixed(&self.fixed_vertices)
@@ -107,20 +103,14 @@ impl<'a> VertexCorrection<'a> {
 
     /// `z = z + P C P^T r`.
     pub fn add(&mut self, r: &[f64], z: &mut [f64]) {
-        let (transpose, interpolation) = (&self.transpose, &self.interpolation);
-        let fixed_vertices = &self.fixed_vertices;
-        for_each_chunk(&mut self.residual, |range, out| {
-            for (v, out) in range.zip(out) {
-                *out = if fixed_vertices[v] { 0.0 } else { transpose.row_dot(v, r) };
-            }
-        });
+        self.prolongation.restrict(r, &mut self.residual);
+        for (r, _) in
+            self.residual.iter_mut().zip(&self.fixed_vertices).filter(|(_, fixed)| **fixed)
+        {
+            *r = 0.0;
+        }
         self.coarse.apply(&self.residual, &mut self.values);
-        let values = &self.values;
-        for_each_chunk(z, |range, out| {
-            for (i, z) in range.zip(out) {
-                *z += interpolation.row_dot(i, values);
-            }
-        });
+        self.prolongation.add_prolongation(&self.values, |_| true, z);
     }
 }
 

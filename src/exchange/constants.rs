@@ -18,7 +18,7 @@ pub fn write_constants(directory: impl AsRef<Path>, constants: &[f64]) -> Result
     let path = directory.as_ref().join(FILE);
     if !constants.is_empty() {
         let bytes = constants.iter().flat_map(|constant| constant.to_le_bytes());
-        let bytes = array("<f8", constants.len(), bytes);
+        let bytes = array("<f8", &[constants.len()], bytes);
         replace(&path, |draft| std::fs::write(draft, bytes)).map(|_| ())
     } else if path.exists() {
         std::fs::remove_file(&path).map_err(|why| write_error(&path, why))

@@ -4,7 +4,7 @@ use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-use super::npy::{array, matrix_of, scalar};
+use super::npy::array;
 use super::npz::archive;
 use crate::algebra::{Bound, DofLocation, Inequality, SparseMatrix};
 use crate::error::{Error, write_error};
@@ -87,15 +87,15 @@ fn write_files_with(
     }
     if !kinks.is_empty() {
         let bytes = kinks.iter().flat_map(|number| number.to_le_bytes());
-        vectors.push(("kinks.npy", matrix_of("<f8", [kinks.len() / 4, 4], bytes)));
+        vectors.push(("kinks.npy", array("<f8", &[kinks.len() / 4, 4], bytes)));
     }
     for (name, bytes) in &vectors {
         replace(&directory.join(name), |draft| fs::write(draft, bytes))?;
     }
     let n = matrix.size() as i64;
     let mut files = vec![
-        ("format.npy", scalar("|S3", b"csr".iter().copied())),
-        ("shape.npy", array("<i8", 2, [n, n].into_iter().flat_map(i64::to_le_bytes))),
+        ("format.npy", array("|S3", &[], b"csr".iter().copied())),
+        ("shape.npy", array("<i8", &[2], [n, n].into_iter().flat_map(i64::to_le_bytes))),
         ("indptr.npy", indices(&matrix.row_starts)),
         ("indices.npy", indices(&matrix.columns)),
         ("data.npy", numbers(&mut matrix.values.iter().copied())),
@@ -111,11 +111,11 @@ fn write_files_with(
 }
 
 fn numbers(values: &mut dyn ExactSizeIterator<Item = f64>) -> Vec<u8> {
-    array("<f8", values.len(), values.flat_map(f64::to_le_bytes))
+    array("<f8", &[values.len()], values.flat_map(f64::to_le_bytes))
 }
 
 fn indices(values: &[u32]) -> Vec<u8> {
-    array("<i8", values.len(), values.iter().flat_map(|&i| i64::from(i).to_le_bytes()))
+    array("<i8", &[values.len()], values.iter().flat_map(|&i| i64::from(i).to_le_bytes()))
 }
 
 fn write_matrix(file: &mut dyn Write, matrix: &SparseMatrix<f64>) -> std::io::Result<()> {

@@ -7,26 +7,12 @@ use crate::input::{excerpt, read_file};
 
 const MAGIC: &[u8] = b"\x93NUMPY";
 
-/// An array of one axis in the format `.npy`, version 1.0: its type as NumPy writes it, and its bytes.
-pub(super) fn array(kind: &str, length: usize, data: impl Iterator<Item = u8>) -> Vec<u8> {
-    with_header(kind, &format!("({length},)"), data)
-}
-
-/// An array of two axes, row after row.
-pub(super) fn matrix_of(
-    kind: &str,
-    [rows, columns]: [usize; 2],
-    data: impl Iterator<Item = u8>,
-) -> Vec<u8> {
-    with_header(kind, &format!("({rows}, {columns})"), data)
-}
-
-/// A single value.
-pub(super) fn scalar(kind: &str, data: impl Iterator<Item = u8>) -> Vec<u8> {
-    with_header(kind, "()", data)
-}
-
-fn with_header(kind: &str, shape: &str, data: impl Iterator<Item = u8>) -> Vec<u8> {
+/// An array of no, one or two axes in the format `.npy`, version 1.0: its type as NumPy writes it, and its bytes.
+pub(super) fn array(kind: &str, shape: &[usize], data: impl Iterator<Item = u8>) -> Vec<u8> {
+    let shape = match shape {
+        [length] => format!("({length},)"),
+        axes => format!("({})", axes.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")),
+    };
     let mut header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}");
     // the data begin at a multiple of 64
     let padding = 64 - (MAGIC.len() + 4 + header.len() + 1) % 64;

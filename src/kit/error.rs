@@ -144,8 +144,6 @@ pub enum KitErrorKind {
     NotCoercive,
     /// The smallest eigenvalue was not found: the source is a [`SpectrumError`](super::spectrum::SpectrumError).
     NoEigenvalue,
-    /// Definiteness could not be decided: the source is a [`FactorError`](crate::linear::FactorError).
-    NotFactored,
     /// Two unknowns of a cell have the same location, so that numberings cannot be compared.
     UnknownsNotTold,
     /// An entry of the matrix depends on numbers of vertices or cells.

@@ -51,7 +51,7 @@ pub(super) struct MeshOfSequence<const D: usize> {
     /// Seconds for this mesh and all before.
     seconds: f64,
     /// The prolongation from the next coarser level of multigrid, computed on demand.
-    prolongation: OnceLock<Arc<Prolongation<f64>>>,
+    prolongation: OnceLock<Arc<Prolongation>>,
     finer: OnceLock<Box<Self>>,
 }
 
@@ -177,10 +177,7 @@ impl<const D: usize> AdaptiveMeshes<D> {
 
     /// The next coarser level of multigrid: the position of the finest mesh with few enough vertices, and
     /// the prolongation of conforming linear functions from there.
-    pub(super) fn coarser_level(
-        &self,
-        position: usize,
-    ) -> Option<(usize, &Arc<Prolongation<f64>>)> {
+    pub(super) fn coarser_level(&self, position: usize) -> Option<(usize, &Arc<Prolongation>)> {
         let step = self.step(position);
         let few = step.n_vertices() as f64 / GROWTH;
         let is_coarser = |step: &MeshOfSequence<D>| step.n_vertices() as f64 <= few;

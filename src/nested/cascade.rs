@@ -39,16 +39,16 @@ pub(super) fn solve_cascade(
 }
 
 /// The means of the bounds of the children of a coarse unknown, with the weights of the prolongation.
-fn mean_bound(bounds: &[Bound<f64>], prolongation: &Prolongation<f64>, j: usize) -> Bound<f64> {
+fn mean_bound(bounds: &[Bound<f64>], prolongation: &Prolongation, j: usize) -> Bound<f64> {
     let mut sums = [(0.0, 0.0); 2];
-    prolongation.for_each_child(j, |i, weight| {
-        let weight = weight.max(0.0);
+    for (i, weight) in prolongation.children(j) {
+        let weight = f64::from(weight.max(0.0));
         for (sum, bound) in sums.iter_mut().zip([bounds[i].lower(), bounds[i].upper()]) {
             if let Some(bound) = bound {
                 *sum = (sum.0 + weight * bound, sum.1 + weight);
             }
         }
-    });
+    }
     let mean = |(sum, weight): (f64, f64)| (weight > 0.0).then(|| sum / weight);
     match sums.map(mean) {
         [Some(lower), Some(upper)] if lower <= upper => Bound::Both(lower, upper),

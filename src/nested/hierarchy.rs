@@ -24,7 +24,7 @@ struct NestedMesh<const D: usize> {
     /// The refinement of the next coarser mesh that gives this one; `None` for the coarsest mesh.
     refinement: Option<Refinement>,
     /// The prolongation of P1 functions from the next coarser mesh, computed on demand.
-    prolongation: OnceLock<Arc<Prolongation<f64>>>,
+    prolongation: OnceLock<Arc<Prolongation>>,
     /// Seconds for this mesh and all coarser ones.
     seconds: f64,
 }
@@ -167,10 +167,10 @@ impl<const D: usize> Hierarchy<D> {
     }
     /// The prolongation of P1 functions from the next coarser mesh; `None` for the coarsest mesh, and on parts, where
     /// no multigrid of this process uses it.
-    pub(super) fn prolongation(&self, position: usize) -> Option<&Arc<Prolongation<f64>>> {
+    pub(super) fn prolongation(&self, position: usize) -> Option<&Arc<Prolongation>> {
         let refinement = self.refinement(position).filter(|_| self.part(position).is_none())?;
         let n_coarse = self.mesh(position - 1).vertices().len();
-        let new = || Arc::new(Prolongation::midpoints(refinement.parents.clone(), n_coarse));
+        let new = || Arc::new(Prolongation::midpoints(&refinement.parents, n_coarse));
         Some(once(&self.at(position).prolongation, new))
     }
 }

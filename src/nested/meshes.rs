@@ -97,10 +97,7 @@ impl<'a, const D: usize> Meshes<'a, D> {
     }
     /// The position of the mesh that is the next coarser level of multigrid, and the prolongation of
     /// conforming linear functions from there.
-    pub(super) fn coarser_level(
-        &self,
-        position: usize,
-    ) -> Option<(usize, &'a Arc<Prolongation<f64>>)> {
+    pub(super) fn coarser_level(&self, position: usize) -> Option<(usize, &'a Arc<Prolongation>)> {
         match self {
             Self::Flat(_) => None,
             Self::Nested(hierarchy) => {

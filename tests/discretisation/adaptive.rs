@@ -164,7 +164,7 @@ fn prolongations_between_bisected_meshes_keep_continuous_functions() {
             parents.extend_from_slice(&bisection.parents[n..]);
         }
         let n = first.vertices().len();
-        let prolongation = Prolongation::<f64>::bisections(parents, n);
+        let prolongation = Prolongation::bisections(parents, n);
         let fine = refined.mesh();
         assert_eq!((prolongation.n_coarse(), prolongation.n_fine()), (n, fine.vertices().len()));
         // a hat function, by its value at every fine vertex from the coarse cell that contains it

@@ -1,7 +1,6 @@
 //! Krylov methods, seen by the preconditioner that they apply to their residuals.
 
 use crate::own_preconditioner::{OnePart, blocks};
-use crate::penalised_cells::{assembled, cells_in_a_row, product};
 use crate::problems::{Random, distance, inequality, laplacian};
 use std::sync::{Arc, Mutex};
 use unilateral::algebra::{Bound, Inequality, SparseMatrix};
@@ -70,37 +69,6 @@ fn dot(x: &[f64], y: &[f64]) -> f64 {
 
 fn free(matrix: SparseMatrix<f64>, load: &[f64]) -> Inequality<f64> {
     inequality(matrix, load, vec![Bound::Free; load.len()])
-}
-
-/// The second residual of conjugate gradients is the first one minus a multiple of the product with the first direction:
-/// the product by blocks and penalties is that of the sum.
-#[test]
-fn the_product_with_a_penalised_matrix_is_that_of_the_sum() {
-    for (n, are_means) in [(3, true), (3, false), (4, true), (4, false)] {
-        let penalised = cells_in_a_row((2, n), are_means, vec![7.0, 3.0]);
-        let load: Vec<f64> = (0..2 * n).map(|i| (1.3 * i as f64).cos()).collect();
-        let mut given = free(assembled(&penalised), &load);
-        given.penalised = Some(penalised.clone());
-        given.bounds[1] = Bound::Fixed(0.0);
-        let recorded = Recorded::new((1..=2 * n).map(|i| 1.0 / i as f64).collect());
-        assert_eq!(recorded.solve(&given).outcome, Outcome::Converged, "{n} {are_means}");
-        let vectors = recorded.vectors();
-        let (first, second) = (&vectors[0], &vectors[1]);
-        let direction: Vec<f64> = first.iter().zip(&recorded.factors).map(|(r, b)| b * r).collect();
-        let product = product(&penalised, &direction);
-        let step = dot(first, &direction) / dot(&direction, &product);
-        for i in 0..2 * n {
-            let is_free = i != 1;
-            let [before, after] =
-                if is_free { [load[i], load[i] - step * product[i]] } else { [0.0; 2] };
-            assert!((first[i] - before).abs() < 1e-14, "{n} {are_means} {i}");
-            assert!(
-                (second[i] - after).abs() < 1e-12,
-                "{n} {are_means} {i}: {} {after}",
-                second[i]
-            );
-        }
-    }
 }
 
 #[test]

@@ -6,7 +6,7 @@ use super::linear_solver::{Accuracy, End, LinearSolver};
 use crate::algebra::{Inequality, PenalisedMatrix};
 use crate::inequality::algebraic_bound::{AdmissibleValues, algebraic_bound};
 use crate::linear::direct::{
-    CondensedFactors, FactorError, Factors, MatrixFactors, OrderedMatrix, StaticCondensation,
+    CondensedFactors, FactorError, Factors, MatrixFactors, StaticCondensation,
 };
 use crate::real::Real;
 
@@ -35,8 +35,6 @@ pub(crate) struct DirectSolver<'a, T> {
     factors: Option<MatrixFactors<T>>,
     /// The static condensation of the penalised matrix, if the matrix is penalised.
     condensation: Option<StaticCondensation<'a, T>>,
-    /// The assembled matrix, with one order of elimination for all active sets if it is symmetric.
-    assembled: OrderedMatrix<'a, T>,
 }
 
 impl<'a, T: Real> DirectSolver<'a, T> {
@@ -44,21 +42,12 @@ impl<'a, T: Real> DirectSolver<'a, T> {
     pub fn new(inequality: &'a Inequality<T>) -> Self {
         let penalised = inequality.penalised.as_ref();
         let condensation = penalised.map(|p| StaticCondensation::new(p, &inequality.matrix));
-        let assembled = OrderedMatrix::new(&inequality.matrix, inequality.free_unknowns());
-        Self { inequality, inactive: Vec::new(), factors: None, condensation, assembled }
+        Self { inequality, inactive: Vec::new(), factors: None, condensation }
     }
 
     /// The static condensation; `None` if the matrix is not penalised.
     pub fn condensation(&self) -> Option<&StaticCondensation<'a, T>> {
         self.condensation.as_ref()
-    }
-
-    /// Factors the submatrix `A_II` of the assembled matrix on the inactive unknowns `I`.
-    fn factor(&self) -> Result<Factors<T>, FactorError> {
-        match self.inequality.symmetric {
-            true => self.assembled.factor(&self.inactive, &[]),
-            false => Factors::new(&self.inequality.matrix, false, &self.inactive),
-        }
     }
 
     /// Corrects the values [`SOLUTIONS`] times; then computes the residual.
@@ -160,7 +149,10 @@ impl<T: Real> LinearSolver<T> for DirectSolver<'_, T> {
                 let is_inactive: Vec<bool> = eliminated.iter().map(|&e| !e).collect();
                 MatrixFactors::Condensed(Box::new(condensation.factor(&is_inactive)?))
             }
-            None => MatrixFactors::Assembled(self.factor()?),
+            None => {
+                let Inequality { matrix, symmetric, .. } = self.inequality;
+                MatrixFactors::Assembled(Factors::new(matrix, *symmetric, &self.inactive)?)
+            }
         });
         Ok(())
     }

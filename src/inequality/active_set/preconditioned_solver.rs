@@ -8,8 +8,7 @@ use crate::inequality::algebraic_bound::{AdmissibleValues, algebraic_bound};
 use crate::linear::Preconditioner;
 use crate::linear::direct::FactorError;
 use crate::linear::krylov::{
-    EIGENVALUE_TO_RITZ_VALUE, KrylovMethod, KrylovRun, Product, StopReason, StoppingRule,
-    eigenvalue_run,
+    EIGENVALUE_TO_RITZ_VALUE, KrylovMethod, KrylovRun, StopReason, StoppingRule, eigenvalue_run,
 };
 use crate::parallel::vectors::{collect, dot, for_each_chunk, zeros};
 use crate::real::Real;
@@ -164,7 +163,7 @@ impl<'a, T: Real> PreconditionedSolver<'a, T> {
         iterate: &mut Iterate<'_, T>,
     ) -> Result<(), End> {
         let run = eigenvalue_run(
-            Product::Assembled(self.symmetric_part),
+            self.symmetric_part,
             self.inequality.distribution(),
             &mut *self.preconditioner,
             &iterate.eliminated,

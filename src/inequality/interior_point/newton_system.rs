@@ -5,6 +5,7 @@ use crate::algebra::{Inequality, PenalisedMatrix, SparseMatrix};
 use crate::inequality::certificate::positive_diagonal;
 use crate::linear::direct::{
     FactorError, Factors, MatrixFactors, StaticCondensation, SymbolicFactor, add_to_diagonal,
+    symbolic_factor,
 };
 use crate::real::Real;
 
@@ -75,7 +76,7 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
                 Some(known) => known,
                 none => {
                     let triangle = self.inequality.matrix.lower_triangle(&self.free);
-                    let analysis = SymbolicFactor::new(&triangle, None)?;
+                    let analysis = symbolic_factor(&triangle)?;
                     none.insert((triangle, analysis))
                 }
             };
@@ -182,7 +183,7 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
         let mut residual = self.zeros();
         let value = |i: usize| point.values[i];
         let Some(penalised) = &self.inequality.penalised else {
-            self.inequality.residual_of(&value, &mut residual.values);
+            self.inequality.residual_of(value, &mut residual.values);
             return residual;
         };
         let multiplier = |jump: usize| point.jump_multipliers[jump];

@@ -10,7 +10,7 @@ use crate::inequality::certificate::violations::certify;
 use crate::inequality::history::Recorder;
 use crate::inequality::initial_guess::InitialGuess;
 use crate::inequality::{Outcome, Solution};
-use crate::linear::krylov::{EIGENVALUE_TO_RITZ_VALUE, Product, StopReason, eigenvalue_run};
+use crate::linear::krylov::{EIGENVALUE_TO_RITZ_VALUE, StopReason, eigenvalue_run};
 use crate::linear::precondition::CoarseLevel;
 use crate::linear::{
     BuiltInPreconditioners, CoarseSpaces, PreconditionedSystem, Preconditioner,
@@ -111,7 +111,7 @@ impl<T: Real> MultigridIterate<'_, T> {
         preconditioner.set_fixed(&fixed).ok()?;
         let diagonal = collect(values.len(), |i| positive_diagonal(inequality, i));
         let of = |i: usize| diagonal[i];
-        let matrix = Product::of(inequality);
+        let matrix = &inequality.matrix;
         let run = eigenvalue_run(matrix, &OnePart, preconditioner, &fixed, of, MAX_ITERATIONS);
         let (smallest, _) = run.ritz.filter(|ritz| ritz.0 > 0.0)?;
         if run.reason != StopReason::Converged {

@@ -1,6 +1,6 @@
 //! Means and jumps over facets in place of the values on either side.
 
-use crate::algebra::{RectangularMatrix, SparseMatrix, galerkin_product};
+use crate::algebra::{SparseMatrix, galerkin_product};
 use crate::mesh::{BoundaryCondition, Facets, Mesh, Neighbours};
 
 /// The change of variables that takes facet means of a broken space apart into their mean and
@@ -19,7 +19,7 @@ use crate::mesh::{BoundaryCondition, Facets, Mesh, Neighbours};
 #[derive(Clone, Debug)]
 pub struct MeanJump {
     /// `E`.
-    change: RectangularMatrix<f64>,
+    change: SparseMatrix<f64>,
     /// Number of means.
     means: usize,
 }
@@ -33,7 +33,7 @@ impl MeanJump {
         let (interior, dirichlet) =
             (facets.interior(), facets.boundary(BoundaryCondition::Dirichlet));
         let means = facets.len() - dirichlet.len();
-        let change = RectangularMatrix::by_rows(0..numbers.len(), |unknown, columns, values| {
+        let change = SparseMatrix::by_rows(0..numbers.len(), |unknown, columns, values| {
             let facet = numbers[unknown] as usize;
             if interior.contains(&facet) {
                 let is_here = facets.here(facet) == (unknown / (D + 1), unknown % (D + 1));
@@ -51,7 +51,7 @@ impl MeanJump {
 
     /// Number of unknowns, the same before and after.
     pub fn size(&self) -> usize {
-        self.change.n_rows()
+        self.change.size()
     }
     /// Number of means: they come first, the jumps follow.
     pub fn means(&self) -> usize {

@@ -1,8 +1,9 @@
 //! The inverse of one block of a [`StaticCondensation`] with its jump multipliers.
 
+use nalgebra::DMatrix;
+
 use super::error::FactorError;
 use super::static_condensation::StaticCondensation;
-use crate::algebra::dense::{extend_basis, invert_in_place};
 use crate::real::Real;
 
 /// The largest weight of a block whose means over sides are linearly dependent because unknowns are fixed, divided by
@@ -15,21 +16,22 @@ const MAX_WEIGHT: f64 = 1e-3;
 const MAX_SHIFT_BY_ROOT: f64 = 4.0;
 
 impl<T: Real> StaticCondensation<'_, T> {
-    /// The rank of the means over the sides of a block, as functions of the unknowns for which `is_variable` is true.
-    /// `basis` is workspace.
-    pub(super) fn rank_of_means(
+    /// Whether the means over the sides of a block are linearly independent as functions of the unknowns for which
+    /// `is_variable` is true: whether their Gram matrix has a Cholesky factor, and no mean is the combination of others
+    /// but for rounding.
+    pub(super) fn has_independent_means(
         &self,
         block: usize,
         is_variable: impl Fn(usize) -> bool,
-        basis: &mut Vec<f64>,
-    ) -> usize {
+    ) -> bool {
         let (n, sides) = (self.penalised.block_size(), self.sides(block));
-        basis.clear();
-        for i in (block * n..(block + 1) * n).filter(|&i| is_variable(i)) {
-            let means = sides.iter().map(|&side| self.mean_coefficient(side, i));
-            extend_basis(basis, means, T::EPSILON.sqrt());
-        }
-        basis.len() / sides.len().max(1)
+        let coefficients = DMatrix::from_fn(n, sides.len(), |k, l| match block * n + k {
+            i if is_variable(i) => self.mean_coefficient(sides[l], i),
+            _ => 0.0,
+        });
+        let factor = coefficients.tr_mul(&coefficients).cholesky();
+        let least = T::EPSILON.sqrt().sqrt();
+        factor.is_some_and(|factor| factor.l_dirty().diagonal().iter().all(|&d| d > least))
     }
 
     /// Sets `inverse` to the inverse of a block with its jump multipliers; returns the number of free
@@ -57,19 +59,20 @@ impl<T: Real> StaticCondensation<'_, T> {
         let is_variable =
             |i: usize| is_free[i] && shift.get(i).is_none_or(|&shift| shift <= max_shift);
         self.fill_block((block, n_free), is_free, shift, unit, inverse);
-        // The rank of the means is computed only if a weight exceeds the limit.
         let limit = least * MAX_WEIGHT / T::EPSILON;
         let may_need_limit = n_free > 0
             && (block * size..(block + 1) * size).any(|i| !is_variable(i))
             && sides.iter().any(|&side| self.side_weight(side) > limit);
-        let mut basis = Vec::new();
-        let has_dependent_means =
-            may_need_limit && self.rank_of_means(block, is_variable, &mut basis) < sides.len();
+        let has_dependent_means = may_need_limit && !self.has_independent_means(block, is_variable);
         let max_weight = if has_dependent_means { limit } else { f64::INFINITY };
         for (l, &side) in (n_free..).zip(sides) {
             inverse[l * n + l] = -unit / self.side_weight(side).min(max_weight);
         }
-        let is_positive = invert_in_place(inverse, n).ok_or(FactorError::Singular)?;
+        let factors = DMatrix::from_row_slice(n, n, inverse).lu();
+        let is_positive = factors.determinant() > 0.0;
+        // of a symmetric matrix: rows are columns
+        let inverted = factors.try_inverse().filter(|matrix| matrix.iter().all(|a| a.is_finite()));
+        inverse.copy_from_slice(inverted.ok_or(FactorError::Singular)?.as_slice());
         // With a positive definite stiffness there are as many negative eigenvalues as sides.
         if is_positive != (sides.len() % 2 == 0) {
             return Err(FactorError::NotPositive);

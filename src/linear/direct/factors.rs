@@ -12,7 +12,7 @@ use faer::sparse::linalg::lu::{
 use faer::{Conj, MatMut, Par, Side};
 
 use super::error::{FactorError, out_of_memory};
-use super::symbolic_factor::{SymbolicFactor, transpose_view};
+use super::symbolic_factor::{SymbolicFactor, symbolic_factor, transpose_view};
 use crate::algebra::SparseMatrix;
 use crate::instances::compiled;
 use crate::memory::in_large_pages;
@@ -66,42 +66,22 @@ impl<T: Real> Factors<T> {
         symmetric: bool,
         free: &[u32],
     ) -> Result<Self, FactorError> {
-        if symmetric {
-            let mut lower = matrix.lower_triangle(free);
-            let symbolic = SymbolicFactor::new(&lower, None)?;
-            Self::cholesky(&mut lower, &symbolic)
-        } else {
-            Self::lu(&matrix.submatrix(free))
-        }
+        if symmetric { Self::shifted(matrix, free, &[]) } else { Self::lu(&matrix.submatrix(free)) }
     }
 
-    /// The Cholesky factor of the rows and columns `free` (ascending) of `A + D`, `A` a symmetric matrix. `order` is a
-    /// permutation of the positions in `free`, the order of elimination. `shift` is the nonnegative diagonal of `D`, or
-    /// empty for zero.
+    /// The Cholesky factor of the rows and columns `free` (ascending) of `A + D`, `A` a symmetric matrix. `shift` is the
+    /// nonnegative diagonal of `D`, or empty for zero.
     ///
     /// # Errors
     /// See [`FactorError`].
-    pub(crate) fn in_order(
+    pub(crate) fn shifted(
         matrix: &SparseMatrix<T>,
         free: &[u32],
-        order: Vec<u32>,
-        shift: &[f64],
-    ) -> Result<Self, FactorError> {
-        compiled!(
-            T: fn(&SparseMatrix<T>, &[u32], Vec<u32>, &[f64]) -> Result<Factors<T>, FactorError>
-                = Factors::factor_in_order
-        )(matrix, free, order, shift)
-    }
-
-    fn factor_in_order(
-        matrix: &SparseMatrix<T>,
-        free: &[u32],
-        order: Vec<u32>,
         shift: &[f64],
     ) -> Result<Self, FactorError> {
         let mut lower = matrix.lower_triangle(free);
         add_to_diagonal(&mut lower, free, shift)?;
-        let symbolic = SymbolicFactor::new(&lower, Some(order))?;
+        let symbolic = symbolic_factor(&lower)?;
         Self::cholesky(&mut lower, &symbolic)
     }
 
@@ -117,7 +97,7 @@ impl<T: Real> Factors<T> {
         if lower.size() == 0 {
             return Ok(Self { size: 0, factorisation: Factorisation::Empty });
         }
-        let factors = Self::try_cholesky(lower, symbolic, Vec::new());
+        let factors = Self::try_cholesky(lower, symbolic);
         factors.and_then(|factors| factors.if_regular(&row_norms(lower, true))).map_err(|error| {
             match error {
                 FactorError::NotPositive => indefinite_or_singular(lower, symbolic),
@@ -126,36 +106,15 @@ impl<T: Real> Factors<T> {
         })
     }
 
-    /// The Cholesky factor of a symmetric matrix that belongs to a preconditioner: whether the matrix is regular to
-    /// working precision is not tested. `order` is a permutation of the rows, the order of elimination. The factor takes
-    /// the memory of another factor, `old`, if it is large enough: new memory costs a page fault for each page.
+    /// The Cholesky factor of a symmetric matrix that is not empty and belongs to a preconditioner: whether it is regular
+    /// to working precision is not tested.
     ///
     /// # Errors
     /// [`FactorError::NotPositive`] if a pivot is not positive; [`FactorError::OutOfMemory`].
-    pub(crate) fn of_block(
-        matrix: &SparseMatrix<T>,
-        order: Vec<u32>,
-        old: Option<Self>,
-    ) -> Result<Self, FactorError> {
-        compiled!(
-            T: fn(&SparseMatrix<T>, Vec<u32>, Option<Factors<T>>) -> Result<Factors<T>, FactorError>
-                = Factors::factor_block
-        )(matrix, order, old)
-    }
-
-    fn factor_block(
-        matrix: &SparseMatrix<T>,
-        order: Vec<u32>,
-        old: Option<Self>,
-    ) -> Result<Self, FactorError> {
-        let memory = match old.map(|old| old.factorisation) {
-            Some(Factorisation::Cholesky { values, .. }) => values,
-            _ => Vec::new(),
-        };
+    pub(crate) fn of_block(matrix: &SparseMatrix<T>) -> Result<Self, FactorError> {
         let all: Vec<u32> = (0..matrix.size() as u32).collect();
         let lower = matrix.lower_triangle(&all);
-        let symbolic = SymbolicFactor::new(&lower, Some(order))?;
-        Self::try_cholesky(&lower, &symbolic, memory)
+        Self::try_cholesky(&lower, &symbolic_factor(&lower)?)
     }
 
     /// Number of unknowns of the factored submatrix.
@@ -169,10 +128,6 @@ impl<T: Real> Factors<T> {
     /// # Panics
     /// If `x` is not empty and has another length.
     pub fn solve_in_place(&self, x: &mut [T], right_sides: usize) {
-        compiled!(T: fn(&Factors<T>, &mut [T], usize) = Factors::substitute)(self, x, right_sides)
-    }
-
-    fn substitute(&self, x: &mut [T], right_sides: usize) {
         if x.is_empty() {
             return;
         }
@@ -195,8 +150,7 @@ impl<T: Real> Factors<T> {
         }
     }
 
-    /// The Cholesky factor of a matrix that is not empty, given by its lower triangle. Its values may take the memory
-    /// `old`.
+    /// The Cholesky factor of a matrix that is not empty, given by its lower triangle.
     ///
     /// # Errors
     /// [`FactorError::NotPositive`] if a pivot is not positive, also for a singular matrix;
@@ -204,10 +158,12 @@ impl<T: Real> Factors<T> {
     fn try_cholesky(
         lower: &SparseMatrix<T>,
         symbolic: &SymbolicFactor,
-        old: Vec<T>,
     ) -> Result<Self, FactorError> {
-        let (a, symbolic) = (transpose_view(lower), symbolic.symbolic_cholesky());
-        let mut values = values_in(old, symbolic.len_val())?;
+        let (a, symbolic) = (transpose_view(lower), symbolic.clone());
+        let mut values = Vec::new();
+        values.try_reserve_exact(symbolic.len_val()).map_err(|_| FactorError::OutOfMemory)?;
+        values = in_large_pages(values);
+        values.resize(symbolic.len_val(), T::lit(0.0));
         let scratch = symbolic.factorize_numeric_llt_scratch::<T>(PAR, Default::default());
         let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::OutOfMemory)?;
         let (stack, none) = (MemStack::new(&mut memory), LltRegularization::default());
@@ -308,22 +264,6 @@ fn row_norms<T: Real>(matrix: &SparseMatrix<T>, symmetric: bool) -> Vec<f64> {
     norms
 }
 
-/// A vector of `length` values, in `memory` if it is large enough. The factorisation reads none of them.
-///
-/// # Errors
-/// [`FactorError::OutOfMemory`].
-fn values_in<T: Real>(memory: Vec<T>, length: usize) -> Result<Vec<T>, FactorError> {
-    let mut values = memory;
-    if values.capacity() < length {
-        // the old memory is released before the new one is taken
-        values = Vec::new();
-        values.try_reserve_exact(length).map_err(|_| FactorError::OutOfMemory)?;
-        values = in_large_pages(values);
-    }
-    values.resize(length, T::lit(0.0));
-    Ok(values)
-}
-
 /// Whether a matrix is positive definite on the unknowns `free` (ascending): whether its symmetric
 /// part has a Cholesky factor. The matrix of a bilinear form is positive definite if the form is
 /// coercive.
@@ -385,7 +325,7 @@ fn indefinite_or_singular<T: Real>(
             return FactorError::NotPositive;
         }
     }
-    match Factors::try_cholesky(lower, symbolic, Vec::new()) {
+    match Factors::try_cholesky(lower, symbolic) {
         Ok(_) => FactorError::Singular,
         Err(error) => error,
     }

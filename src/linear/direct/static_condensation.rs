@@ -28,10 +28,9 @@
 
 use std::sync::OnceLock;
 
-use super::elimination_order::OrderedMatrix;
 use super::error::FactorError;
 use super::factors::Factors;
-use super::symbolic_factor::SymbolicFactor;
+use super::symbolic_factor::{SymbolicFactor, symbolic_factor};
 use crate::algebra::{JumpSide, NO_INDEX, PenalisedMatrix, SparseMatrix};
 use crate::parallel::once;
 use crate::real::Real;
@@ -51,7 +50,7 @@ enum ReducedMatrix<'a, T> {
     /// pattern of its factor.
     FacetMeans { pattern: SparseMatrix<T>, symbolic: OnceLock<SymbolicFactor> },
     /// The assembled matrix.
-    Assembled(OrderedMatrix<'a, T>),
+    Assembled(&'a SparseMatrix<T>),
 }
 
 /// Factors of a matrix on some unknowns.
@@ -88,14 +87,10 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
             mean
         };
         let means = (0..penalised.n_jumps()).map(mean).collect();
-        let all = (0..penalised.size() as u32).collect();
-        let reduced = ReducedMatrix::Assembled(OrderedMatrix::new(assembled, all));
+        let reduced = ReducedMatrix::Assembled(assembled);
         let mut condensation = Self { penalised, means, reduced };
-        let mut basis = Vec::new();
-        let has_independent_means = (0..condensation.n_blocks()).all(|block| {
-            let n_sides = condensation.sides(block).len();
-            condensation.rank_of_means(block, |_| true, &mut basis) == n_sides
-        });
+        let has_independent_means = (0..condensation.n_blocks())
+            .all(|block| condensation.has_independent_means(block, |_| true));
         if has_independent_means {
             let pattern = condensation.lower_pattern(n_means as usize);
             condensation.reduced = ReducedMatrix::FacetMeans { pattern, symbolic: OnceLock::new() };
@@ -191,7 +186,7 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
                 let symbolic = match symbolic.get() {
                     Some(symbolic) => symbolic,
                     None => {
-                        let new = SymbolicFactor::new(&lower, None)?;
+                        let new = symbolic_factor(&lower)?;
                         once(symbolic, || new)
                     }
                 };
@@ -201,7 +196,7 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
             ReducedMatrix::Assembled(matrix) => {
                 let n = self.penalised.size() as u32;
                 let free: Vec<u32> = (0..n).filter(|&i| is_free[i as usize]).collect();
-                matrix.factor(&free, shift).map(CondensedFactors::Assembled)
+                Factors::shifted(matrix, &free, shift).map(CondensedFactors::Assembled)
             }
         }
     }

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use faer::Side;
-use faer::perm::Perm;
 use faer::sparse::SparseColMatRef;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
@@ -13,45 +12,23 @@ use super::error::{FactorError, out_of_memory};
 use crate::algebra::SparseMatrix;
 use crate::real::Real;
 
-/// The pattern of the Cholesky factor of a symmetric matrix, for an order of elimination.
-#[derive(Clone, Debug)]
-pub(crate) struct SymbolicFactor(Arc<SymbolicCholesky<u32>>);
+/// The pattern of the Cholesky factor of a symmetric matrix, which all factors of matrices with this pattern share.
+pub(crate) type SymbolicFactor = Arc<SymbolicCholesky<u32>>;
 
-impl SymbolicFactor {
-    /// The pattern for the lower triangle of a matrix and an order of elimination: a permutation of the
-    /// rows, or approximate minimum degree for `None`.
-    ///
-    /// # Errors
-    /// [`FactorError::OutOfMemory`].
-    ///
-    /// # Panics
-    /// If `order` is not a permutation of the rows.
-    pub fn new<T: Real>(
-        lower: &SparseMatrix<T>,
-        order: Option<Vec<u32>>,
-    ) -> Result<Self, FactorError> {
-        let order = order.map(|order| {
-            let mut inverse = vec![0; order.len()];
-            order.iter().enumerate().for_each(|(k, &i)| inverse[i as usize] = k as u32);
-            Perm::new_checked(order.into(), inverse.into(), lower.size())
-        });
-        let ordering = match &order {
-            Some(order) => SymmetricOrdering::Custom(order.as_ref()),
-            None => SymmetricOrdering::Amd,
-        };
-        // The transpose of the lower triangle is the upper triangle.
-        let pattern = transpose_view(lower);
-        let params = CholeskySymbolicParams::default();
-        let symbolic =
-            factorize_symbolic_cholesky(pattern.symbolic(), Side::Upper, ordering, params)
-                .map_err(out_of_memory)?;
-        Ok(Self(Arc::new(symbolic)))
-    }
-
-    /// The pattern as faer's data structure, which all factors of matrices with this pattern share.
-    pub fn symbolic_cholesky(&self) -> Arc<SymbolicCholesky<u32>> {
-        self.0.clone()
-    }
+/// The pattern for the lower triangle of a matrix in the order of approximate minimum degree (P. R. Amestoy, T. A.
+/// Davis, I. S. Duff, SIAM J. Matrix Anal. Appl. 17 (1996), 886-905).
+///
+/// # Errors
+/// [`FactorError::OutOfMemory`].
+pub(crate) fn symbolic_factor<T: Real>(
+    lower: &SparseMatrix<T>,
+) -> Result<SymbolicFactor, FactorError> {
+    // The transpose of the lower triangle is the upper triangle.
+    let pattern = transpose_view(lower);
+    let params = CholeskySymbolicParams::default();
+    factorize_symbolic_cholesky(pattern.symbolic(), Side::Upper, SymmetricOrdering::Amd, params)
+        .map(Arc::new)
+        .map_err(out_of_memory)
 }
 
 /// A view of the transpose in compressed column storage: the row arrays of the matrix are the

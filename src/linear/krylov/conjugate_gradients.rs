@@ -1,16 +1,15 @@
 //! Preconditioned conjugate gradients on the free unknowns.
 
 use super::lanczos::LanczosMatrix;
-use super::product::Product;
 use super::stopping::{KrylovRun, StopReason, StoppingRule};
-use crate::algebra::{Distribution, sum_over_parts};
+use crate::algebra::{Distribution, SparseMatrix, sum_over_parts};
 use crate::linear::precondition::Preconditioner;
 use crate::parallel::vectors::{dot, for_each_chunk, sum_chunks, sum_chunks_of_two, zeros};
 use crate::real::Real;
 
 /// Conjugate gradients for a symmetric matrix, with vectors that are allocated once.
 pub(crate) struct ConjugateGradients<'m, T> {
-    matrix: Product<'m, T>,
+    matrix: &'m SparseMatrix<T>,
     /// The distribution of the unknowns over the parts of a mesh; unknowns that other parts own are fixed.
     distribution: &'m dyn Distribution,
     /// The preconditioned residual.
@@ -27,7 +26,7 @@ impl<'m, T: Real> ConjugateGradients<'m, T> {
     /// The method for a symmetric matrix, or for the rows of one part of a mesh. Unknowns that other parts own must be
     /// fixed, and zero in preconditioned residuals; on return of [`ConjugateGradients::solve`] their values in `x` are
     /// those that the owners computed.
-    pub fn new(matrix: Product<'m, T>, distribution: &'m dyn Distribution) -> Self {
+    pub fn new(matrix: &'m SparseMatrix<T>, distribution: &'m dyn Distribution) -> Self {
         let n = matrix.size();
         Self { matrix, distribution, z: zeros(n), p: zeros(n), q: zeros(n), largest_ritz: 1.0 }
     }
@@ -95,8 +94,14 @@ impl<'m, T: Real> ConjugateGradients<'m, T> {
     fn multiply(&mut self, fixed: &[bool]) -> f64 {
         self.distribution.update(&mut self.p);
         let (matrix, p) = (&self.matrix, &self.p);
-        let own =
-            sum_chunks(&mut self.q, matrix.group(), |range, q| matrix.rows(range, fixed, p, q));
+        let own = sum_chunks(&mut self.q, 1, |range, q| {
+            let mut sum = 0.0;
+            for (i, q) in range.zip(q) {
+                *q = if fixed[i] { T::lit(0.0) } else { matrix.row_dot(i, p) };
+                sum += p[i].to_f64() * q.to_f64();
+            }
+            sum
+        });
         sum_over_parts(self.distribution, own)
     }
 

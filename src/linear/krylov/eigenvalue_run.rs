@@ -1,7 +1,7 @@
 //! The smallest eigenvalue of a preconditioned matrix.
 
-use super::{ConjugateGradients, KrylovRun, Product, StoppingRule};
-use crate::algebra::Distribution;
+use super::{ConjugateGradients, KrylovRun, StoppingRule};
+use crate::algebra::{Distribution, SparseMatrix};
 use crate::linear::Preconditioner;
 use crate::parallel::vectors::{pseudorandom_signs, zeros};
 use crate::real::Real;
@@ -19,7 +19,7 @@ const TOLERANCE: f64 = 1e-6;
 /// pseudo-random signs: its components in all eigenvectors have similar norms, also in eigenvectors that are
 /// concentrated in a region with a small coefficient.
 pub(crate) fn eigenvalue_run<T: Real>(
-    matrix: Product<'_, T>,
+    matrix: &SparseMatrix<T>,
     distribution: &dyn Distribution,
     preconditioner: &mut dyn Preconditioner<T>,
     fixed: &[bool],

@@ -6,7 +6,7 @@
 //! (1997), 103-117; S. C. Eisenstat, H. C. Elman, M. H. Schultz, SIAM J. Numer. Anal. 20 (1983),
 //! 345-357).
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use super::stopping::{KrylovRun, StopReason, StoppingRule};
 use crate::algebra::{Distribution, SparseMatrix, sum_over_parts};
@@ -97,12 +97,8 @@ impl<'m, T: Real> Gmres<'m, T> {
                         return run;
                     }
                     last_cycle = Some((run.residual_norm, hessenberg.size()));
-                    self.correct(
-                        matrix,
-                        fixed,
-                        &hessenberg.least_squares(run.residual_norm),
-                        (x, r),
-                    );
+                    let (weights, _) = hessenberg.least_squares(run.residual_norm);
+                    self.correct(matrix, fixed, weights.as_slice(), (x, r));
                     continue;
                 }
             };
@@ -158,7 +154,8 @@ impl<'m, T: Real> Gmres<'m, T> {
             let square = dot(next, &mut self.directions[k + 1]);
             norm = sum_over_parts(self.distribution, square).max(0.0).sqrt();
             column.push(norm);
-            residual_norm *= hessenberg.push(column);
+            hessenberg.columns.push(column);
+            residual_norm = hessenberg.least_squares(initial).1;
         }
         hessenberg
     }
@@ -222,15 +219,10 @@ fn subtract_multiple<T: Real>(x: &mut [T], factor: f64, y: &[T]) {
     });
 }
 
-/// The upper Hessenberg matrix of the Arnoldi process, and its QR factors by Givens rotations.
+/// The upper Hessenberg matrix of the Arnoldi process: column `k` has `k + 2` entries.
 #[derive(Default)]
 struct HessenbergMatrix {
-    /// Column `k` has `k + 2` entries.
     columns: Vec<Vec<f64>>,
-    /// The triangular factor; column `k` has `k + 1` entries.
-    triangle: Vec<Vec<f64>>,
-    /// Cosine and sine of each rotation.
-    rotations: Vec<(f64, f64)>,
 }
 
 impl HessenbergMatrix {
@@ -243,49 +235,29 @@ impl HessenbergMatrix {
         self.columns.iter().flatten().all(|x| x.is_finite())
     }
 
-    /// Adds a column; returns the ratio of the norms of the minimal residual with and without this column.
-    fn push(&mut self, column: Vec<f64>) -> f64 {
-        let mut rotated = column.clone();
-        for (k, &(c, s)) in self.rotations.iter().enumerate() {
-            let (a, b) = (rotated[k], rotated[k + 1]);
-            (rotated[k], rotated[k + 1]) = (c * a + s * b, c * b - s * a);
-        }
-        self.columns.push(column);
-        let below = rotated.pop().unwrap_or(0.0);
-        let last =
-            rotated.last_mut().map_or(0.0, |last| std::mem::replace(last, last.hypot(below)));
-        let length = last.hypot(below);
-        let (c, s) = if length > 0.0 { (last / length, below / length) } else { (1.0, 0.0) };
-        self.rotations.push((c, s));
-        self.triangle.push(rotated);
-        s.abs()
+    fn entry(&self, i: usize, j: usize) -> f64 {
+        self.columns[j].get(i).copied().unwrap_or(0.0)
     }
 
-    /// The minimiser `y` of `|norm e_1 - H y|`: the weights of the directions.
-    fn least_squares(&self, norm: f64) -> Vec<f64> {
+    /// The minimiser `y` of `|norm e_1 - H y|`, the weights of the directions, and the minimum.
+    fn least_squares(&self, norm: f64) -> (DVector<f64>, f64) {
         let n = self.size();
-        let mut y = Vec::with_capacity(n);
-        let mut residual = norm;
-        for &(c, s) in &self.rotations {
-            y.push(c * residual);
-            residual *= -s;
-        }
-        for k in (0..n).rev() {
-            y[k] /= self.triangle[k][k];
-            for i in 0..k {
-                y[i] -= self.triangle[k][i] * y[k];
-            }
-        }
-        y
+        let qr = DMatrix::from_fn(n + 1, n, |i, j| self.entry(i, j)).qr();
+        let mut right = DVector::zeros(n + 1);
+        right[0] = norm;
+        qr.q_tr_mul(&mut right);
+        let residual = right[n].abs();
+        // without a solution the matrix is singular: no correction
+        let y = qr.unpack_r().solve_upper_triangular(&right.rows(0, n));
+        (y.unwrap_or_else(|| DVector::zeros(n)), residual)
     }
 
     /// The smallest and the largest among the eigenvalues of the symmetric part of the square matrix (without the last
     /// row) and the two values `previous`; `None` without columns and `previous`. They lie between the smallest and the
     /// largest eigenvalue of `B` times the symmetric part of `A`.
     fn extreme_ritz_values(&self, previous: Option<(f64, f64)>) -> Option<(f64, f64)> {
-        let entry = |i: usize, j: usize| self.columns[j].get(i).copied().unwrap_or(0.0);
         let n = self.size();
-        let part = DMatrix::from_fn(n, n, |i, j| 0.5 * (entry(i, j) + entry(j, i)));
+        let part = DMatrix::from_fn(n, n, |i, j| 0.5 * (self.entry(i, j) + self.entry(j, i)));
         let ritz = part.symmetric_eigenvalues();
         let all = ritz.iter().copied().chain(previous.into_iter().flat_map(|(l, h)| [l, h]));
         all.fold(None, |range: Option<(f64, f64)>, x| {

@@ -4,7 +4,6 @@ use std::borrow::Cow;
 
 use super::conjugate_gradients::ConjugateGradients;
 use super::gmres::Gmres;
-use super::product::Product;
 use super::stopping::{KrylovRun, StoppingRule};
 use crate::algebra::{Inequality, SparseMatrix};
 use crate::linear::precondition::Preconditioner;
@@ -31,10 +30,7 @@ impl<'m, T: Real> KrylovMethod<'m, T> {
     pub fn new(inequality: &'m Inequality<T>) -> Self {
         let (matrix, distribution) = (&inequality.matrix, inequality.distribution());
         match inequality.symmetric {
-            true => {
-                let product = Product::of(inequality);
-                Self::ConjugateGradients(ConjugateGradients::new(product, distribution))
-            }
+            true => Self::ConjugateGradients(ConjugateGradients::new(matrix, distribution)),
             false => Self::Gmres(matrix, Gmres::new(matrix.size(), distribution)),
         }
     }

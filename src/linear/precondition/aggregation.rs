@@ -3,7 +3,7 @@
 //! Source: P. Vanek, J. Mandel, M. Brezina, Computing 56 (1996), 179-196.
 
 use super::prolongation::Prolongation;
-use crate::algebra::{NO_INDEX, RectangularMatrix, SparseMatrix, galerkin_product, sort_by_column};
+use crate::algebra::{NO_INDEX, SparseMatrix, galerkin_product, sort_by_column};
 use crate::real::Real;
 
 /// Unknowns `i` and `j` are strongly coupled if `a_ij^2 > STRENGTH^2 a_ii a_jj`.
@@ -22,7 +22,7 @@ const DAMPING: f64 = 4.0 / 3.0;
 pub(crate) fn aggregate<T: Real>(
     matrix: &SparseMatrix<T>,
     fixed: &[bool],
-) -> Option<(Prolongation<T>, SparseMatrix<T>)> {
+) -> Option<(Prolongation, SparseMatrix<T>)> {
     let diagonal: Vec<f64> = matrix.diagonal().iter().map(|d| d.to_f64()).collect();
     let is_strong = |i: usize, j: usize, a: T| {
         i != j && !fixed[j] && a.to_f64().powi(2) > STRENGTH * STRENGTH * diagonal[i] * diagonal[j]
@@ -31,9 +31,9 @@ pub(crate) fn aggregate<T: Real>(
     if n_coarse == 0 || 2 * n_coarse > matrix.size() {
         return None;
     }
-    let prolongation = smoothed_prolongation(matrix, fixed, &diagonal, &aggregate_of);
-    let coarse = galerkin_product(matrix, &prolongation, n_coarse);
-    Some((Prolongation::from_weights(prolongation, n_coarse), coarse))
+    let rows = smoothed_prolongation(matrix, fixed, &diagonal, &aggregate_of);
+    let coarse = galerkin_product(matrix, &rows, n_coarse);
+    Some((Prolongation::new(rows, n_coarse), coarse))
 }
 
 /// The aggregate of each unknown, [`NO_INDEX`] for none, and the number of aggregates.
@@ -96,7 +96,7 @@ fn smoothed_prolongation<T: Real>(
     fixed: &[bool],
     diagonal: &[f64],
     aggregate_of: &[u32],
-) -> RectangularMatrix<T> {
+) -> SparseMatrix<f32> {
     let n = matrix.size();
     // The largest absolute row sum bounds the largest eigenvalue of D^-1 A.
     let row_sum = |i: usize| {
@@ -105,9 +105,9 @@ fn smoothed_prolongation<T: Real>(
     };
     let largest = (0..n).filter(|&i| !fixed[i]).map(row_sum).fold(1.0, f64::max);
     let omega = DAMPING / largest;
-    RectangularMatrix::by_groups(n, &|range| {
+    SparseMatrix::by_groups(n, &|range| {
         let mut row: Vec<(u32, f64)> = Vec::new();
-        RectangularMatrix::by_rows(range, |i, of_row, weights| {
+        SparseMatrix::by_rows(range, |i, of_row, weights| {
             row.clear();
             if !fixed[i] && diagonal[i] > 0.0 {
                 let (columns, values) = matrix.row(i);
@@ -127,7 +127,7 @@ fn smoothed_prolongation<T: Real>(
                 sort_by_column(&mut row);
             }
             of_row.extend(row.iter().map(|&(column, _)| column));
-            weights.extend(row.iter().map(|&(_, weight)| T::lit(weight)));
+            weights.extend(row.iter().map(|&(_, weight)| weight as f32));
         })
     })
 }

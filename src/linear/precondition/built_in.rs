@@ -7,8 +7,10 @@ use super::mean_jump_splitting::MeanJumpSplitting;
 use super::multigrid::Multigrid;
 use super::preconditioner::{PreconditionedSystem, Preconditioner, PreconditionerFamily};
 use super::prolongation::Prolongation;
-use super::smoother::unknowns_per_cell;
+use crate::algebra::DofLocation;
+use crate::element::MAX_BASIS;
 use crate::instances::compiled;
+use crate::parallel::vectors::all;
 use crate::real::Real;
 
 /// The preconditioner that fits the coarse spaces and the element. The first case that applies counts:
@@ -63,4 +65,24 @@ fn fitting<T: Real>(
     let prolongation = Prolongation::to_element(locations, level.size())?;
     let matrix = Cow::Borrowed(matrix);
     Some(Box::new(Multigrid::of_element(matrix, prolongation, level, cell_size)))
+}
+
+/// The number of unknowns of a cell, from the locations of all unknowns: one if no unknown belongs to a single cell.
+/// If every unknown belongs to a cell: the number `n` of unknowns at the beginning of the list that belong to the cell
+/// of the first unknown, provided that `n` is at most [`MAX_BASIS`] and the list consists of groups of `n` consecutive
+/// unknowns, each group with one cell. `None` for every other list, and for the empty list.
+///
+/// The function does not check that two groups belong to different cells.
+pub(crate) fn unknowns_per_cell(locations: &[DofLocation]) -> Option<usize> {
+    let first = locations.first()?.cell();
+    if first.is_none() {
+        return all(locations.len(), |i| locations[i].cell().is_none()).then_some(1);
+    }
+    let size = locations.iter().take_while(|p| p.cell() == first).count();
+    let is_of_group = |i: usize| {
+        let cell = locations[i].cell();
+        cell.is_some() && cell == locations[i / size * size].cell()
+    };
+    let are_groups = size <= MAX_BASIS && locations.len().is_multiple_of(size);
+    (are_groups && all(locations.len(), is_of_group)).then_some(size)
 }

@@ -67,14 +67,14 @@ impl<T: Real> P1Level<T> {
 #[derive(Clone, Debug)]
 pub struct CoarseLevel<T> {
     pub(crate) level: Arc<P1Level<T>>,
-    pub(crate) prolongation: Arc<Prolongation<T>>,
+    pub(crate) prolongation: Arc<Prolongation>,
 }
 
 impl<T: Real> CoarseLevel<T> {
     /// A coarser level with its prolongation; `None` if the prolongation has another number of coarse
     /// unknowns than the level has vertices.
     #[must_use]
-    pub fn new(level: Arc<P1Level<T>>, prolongation: Arc<Prolongation<T>>) -> Option<Self> {
+    pub fn new(level: Arc<P1Level<T>>, prolongation: Arc<Prolongation>) -> Option<Self> {
         (level.size() == prolongation.n_coarse()).then_some(Self { level, prolongation })
     }
 
@@ -84,7 +84,7 @@ impl<T: Real> CoarseLevel<T> {
     }
 
     /// The prolongation from the coarser level.
-    pub fn prolongation(&self) -> &Prolongation<T> {
+    pub fn prolongation(&self) -> &Prolongation {
         &self.prolongation
     }
 

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::coarse_level::{CoarseLevel, P1Level};
-use super::prolongation::rows_of_means;
+use super::prolongation::Prolongation;
 use crate::algebra::{Bound, DofLocation, Inequality, SparseMatrix, galerkin_product};
 use crate::parallel::vectors::all;
 use crate::real::Real;
@@ -72,12 +72,12 @@ fn p1_level<T: Real>(
 ) -> Option<P1Level<T>> {
     let last = locations.iter().flat_map(|p| p.vertices()).max()?;
     let n = *last as usize + 1;
-    let rows = rows_of_means(locations, n)?;
+    let prolongation = Prolongation::to_element(locations, n)?;
     let mut fixed_vertices = vec![false; n];
     for (location, _) in locations.iter().zip(fixed).filter(|(_, fixed)| **fixed) {
         location.vertices().iter().for_each(|&v| fixed_vertices[v as usize] = true);
     }
-    let form = galerkin_product(matrix, &rows, n);
+    let form = galerkin_product(matrix, prolongation.rows(), n);
     for (v, fixed) in fixed_vertices.iter_mut().enumerate() {
         *fixed |= form.get(v, v) <= T::lit(0.0);
     }

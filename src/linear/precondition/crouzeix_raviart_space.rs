@@ -1,17 +1,13 @@
 //! The Crouzeix-Raviart functions on the mesh of a discontinuous linear element.
 
-use std::ops::Range;
+use std::array::from_fn;
 
 use super::facet_mean_form::stiffness;
 use super::prolongation::Prolongation;
 use crate::algebra::{
-    DofLocation, NO_INDEX, PenalisedMatrix, RectangularMatrix, SidePenalties, SparseMatrix,
-    sort_by_column,
+    DofLocation, NO_INDEX, PenalisedMatrix, SidePenalties, SparseMatrix, sort_by_column,
 };
-use crate::memory::in_large_pages;
-use crate::parallel::cells::{items, n_chunks};
-use crate::parallel::vectors::{collect, indices, positions, zeros};
-use crate::parallel::{for_each_item, split};
+use crate::parallel::vectors::{collect, indices, positions};
 use crate::real::Real;
 
 /// The Crouzeix-Raviart functions on a mesh, one for each facet; the sides of facets have the indices of
@@ -46,31 +42,13 @@ impl CrouzeixRaviartSpace {
         penalties: &SidePenalties<T>,
         penalised: &PenalisedMatrix<T>,
     ) -> SparseMatrix<T> {
-        let size = penalties.cell_size;
-        let n = self.sides_of_facet.len();
-        let mut row_starts = in_large_pages(Vec::with_capacity(n + 1));
-        row_starts.push(0);
-        let mut end = 0;
-        row_starts.extend(self.sides_of_facet.iter().map(|sides| {
-            end += if sides[1] == NO_INDEX { size } else { 2 * size - 1 } as u32;
-            end
-        }));
-        let (mut columns, mut values) =
-            (in_large_pages(vec![0; end as usize]), zeros(end as usize));
-        let starts = &row_starts;
-        let length = |facets: Range<usize>| (starts[facets.end] - starts[facets.start]) as usize;
-        let lengths = || (0..n_chunks(n)).map(|chunk| length(items(chunk, n)));
-        let entries = split(&mut columns, lengths()).zip(split(&mut values, lengths()));
-        for_each_item(entries.collect(), &|chunk, (columns, values): (&mut [u32], &mut [T])| {
-            let mut entries = columns.iter_mut().zip(values);
-            for own in items(chunk, n) {
+        SparseMatrix::by_groups(self.sides_of_facet.len(), &|range| {
+            SparseMatrix::by_rows(range, |own, columns, values| {
                 let (row, n) = self.row(own, penalties, penalised);
-                for (&(column, value), to) in row[..n].iter().zip(&mut entries) {
-                    (*to.0, *to.1) = (column, value);
-                }
-            }
-        });
-        SparseMatrix { row_starts, columns, values }
+                columns.extend(row[..n].iter().map(|entry| entry.0));
+                values.extend(row[..n].iter().map(|entry| entry.1));
+            })
+        })
     }
 
     /// The row of a facet, sorted by column, with the number of its entries: the facet itself, and at most three other
@@ -109,28 +87,23 @@ impl CrouzeixRaviartSpace {
         penalties: &SidePenalties<T>,
         locations: &[DofLocation],
         n_vertices: usize,
-    ) -> Option<Prolongation<T>> {
+    ) -> Option<Prolongation> {
         let size = penalties.cell_size;
-        let length = size - 1;
-        let n = self.sides_of_facet.len();
-        let vertices = collect(n * length, |k| {
-            let (side, place) = (self.sides_of_facet[k / length][0] as usize, k % length);
+        let of_facet = |facet: usize| {
+            let side = self.sides_of_facet[facet][0] as usize;
             if penalties.are_means {
-                return locations[side].vertices()[place];
+                return locations[side];
             }
             // all vertices of the cell but the one opposite the facet
-            let opposite = side % size;
-            let local = place + usize::from(place >= opposite);
-            locations[side - opposite + local].vertices()[0]
-        });
-        if vertices.iter().any(|&v| v as usize >= n_vertices) {
-            return None;
-        }
-        let rows = RectangularMatrix {
-            starts: (0..=n as u32).map(|facet| facet * length as u32).collect(),
-            values: vec![T::lit(1.0 / length as f64); vertices.len()],
-            columns: vertices,
+            let (first, opposite) = (side / size * size, side % size);
+            let vertex = |place: usize| first + place + usize::from(place >= opposite);
+            let vertices: [u32; 3] = from_fn(|place| match place + 1 < size {
+                true => locations[vertex(place)].vertices()[0],
+                false => NO_INDEX,
+            });
+            DofLocation::new(None, &vertices[..size - 1])
         };
-        Some(Prolongation::from_weights(rows, n_vertices))
+        let of_facets = collect(self.sides_of_facet.len(), of_facet);
+        Prolongation::to_element(&of_facets, n_vertices)
     }
 }

@@ -7,7 +7,7 @@ use super::coarse_spaces::CoarseSpaces;
 use crate::real::Real;
 
 impl CoarseSpaces<f64> {
-    /// The spaces with every entry of their matrices and prolongations rounded once.
+    /// The spaces with every entry of their matrices rounded once.
     #[must_use]
     pub fn in_precision<T: Real>(&self) -> CoarseSpaces<T> {
         match self {
@@ -32,7 +32,7 @@ impl CoarseLevel<f64> {
     fn in_precision<T: Real>(&self) -> CoarseLevel<T> {
         CoarseLevel {
             level: Arc::new(self.level.in_precision()),
-            prolongation: Arc::new(self.prolongation.in_precision()),
+            prolongation: self.prolongation.clone(),
         }
     }
 }

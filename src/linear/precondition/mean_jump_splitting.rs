@@ -118,7 +118,7 @@ impl<'a, T: Real> MeanJumpSplitting<'a, T> {
             let multigrid = Multigrid::of_element(stiffness, prolongation, level, 1);
             Some(Box::new(multigrid) as Box<dyn FacetMeansSolver<T> + 'a>)
         };
-        let factors = Box::new(BlockFactors::new(penalised.block_size()));
+        let factors = Box::new(BlockFactors(None));
         Self::with_solvers(matrix, penalised, (locations, level.size()), multigrid, factors)
     }
 

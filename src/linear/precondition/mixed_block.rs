@@ -6,7 +6,7 @@
 //! elimination leaves `p k / (k + p)` of the penalty: what remains is positive definite.
 
 use crate::algebra::{NO_INDEX, SidePenalties, SparseMatrix};
-use crate::linear::direct::{FactorError, Factors, minimum_degree_of_groups};
+use crate::linear::direct::{FactorError, Factors};
 use crate::real::Real;
 
 /// The mixed block, with its solver.
@@ -38,20 +38,8 @@ pub(crate) trait BlockSolver<T>: Send + Sync {
     fn solve(&mut self, vector: &mut [T]);
 }
 
-/// Factors of a block.
-pub(super) struct BlockFactors<T> {
-    /// Number of unknowns of a cell.
-    cell_size: usize,
-    /// `None` for a block without functions, and before the first block.
-    factors: Option<Factors<T>>,
-}
-
-impl<T> BlockFactors<T> {
-    /// No factors yet; consecutive groups of `cell_size` unknowns of the whole matrix belong to a cell.
-    pub fn new(cell_size: usize) -> Self {
-        Self { cell_size, factors: None }
-    }
-}
+/// Factors of a block; `None` for a block without functions, and before the first block.
+pub(super) struct BlockFactors<T>(pub Option<Factors<T>>);
 
 impl<T: Real> BlockSolver<T> for BlockFactors<T> {
     fn is_collective(&self) -> bool {
@@ -59,21 +47,15 @@ impl<T: Real> BlockSolver<T> for BlockFactors<T> {
     }
 
     fn factor(&mut self, block: &SparseMatrix<T>, unknowns: &[u32]) -> Result<(), FactorError> {
-        let old = self.factors.take();
+        self.0 = None;
         if !unknowns.is_empty() {
-            // the unknowns of a cell stand one after the other, and are coupled to nearly the same unknowns
-            let cell = |k: usize| unknowns[k] as usize / self.cell_size;
-            let is_first = |k: &usize| *k == 0 || cell(*k) != cell(k - 1);
-            let firsts = (0..unknowns.len()).filter(is_first).chain([unknowns.len()]);
-            let starts: Vec<u32> = firsts.map(|k| k as u32).collect();
-            let order = minimum_degree_of_groups(block, &starts)?;
-            self.factors = Some(Factors::of_block(block, order, old)?);
+            self.0 = Some(Factors::of_block(block)?);
         }
         Ok(())
     }
 
     fn solve(&mut self, x: &mut [T]) {
-        if let Some(factors) = &self.factors {
+        if let Some(factors) = &self.0 {
             factors.solve_in_place(x, 1);
         }
     }

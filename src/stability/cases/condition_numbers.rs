@@ -1,7 +1,7 @@
 //! Condition numbers over penalty factors, by the method of Lanczos: a part of the case of penalty factors.
 
 use crate::algebra::SparseMatrix;
-use crate::kit::spectrum::{CholeskyMatrix, Diagonal, Lanczos, MeanJump, PositiveDefinite};
+use crate::kit::spectrum::{MeanJump, extreme_eigenvalues};
 use crate::measure::observed_order;
 use crate::stability::table::*;
 
@@ -76,17 +76,16 @@ fn in_words(condition: Option<f64>) -> String {
     condition.map_or_else(String::new, |number| format!("condition number {number:.3e}"))
 }
 
-/// The condition number of `B^-1 A`; none where a factorisation fails or Lanczos' method does not converge.
-fn condition(matrix: &SparseMatrix<f64>, b: &dyn PositiveDefinite) -> Option<f64> {
-    let a = CholeskyMatrix::new(matrix).ok()?;
-    let lanczos = Lanczos::default().with_tolerance(1e-6);
-    lanczos.extremes(&a, b).ok().map(|found| found.condition())
+/// The condition number of `B^-1 A`, `B` a diagonal matrix; none where a factorisation fails or Lanczos' method does not converge.
+fn condition(a: &SparseMatrix<f64>, b: Vec<f64>) -> Option<f64> {
+    let found = extreme_eigenvalues(a, &SparseMatrix::from_diagonal(b), 1e-6);
+    found.ok().map(|found| found.condition())
 }
 
 /// Of the matrix as it is.
 fn plain(at: &At<'_>) -> Option<f64> {
     let matrix = at.matrix(None)?;
-    condition(&matrix, &Diagonal::identity(matrix.size()))
+    condition(&matrix, vec![1.0; matrix.size()])
 }
 
 /// In means and jumps with the diagonal as preconditioner. The values of broken linears at facet means are the nodes of
@@ -94,5 +93,5 @@ fn plain(at: &At<'_>) -> Option<f64> {
 fn in_means_and_jumps(at: &At<'_>) -> Option<f64> {
     let mesh = at.scene()?.domain.mesh(at.place().level).ok()?;
     let matrix = MeanJump::new(&mesh).transform(&at.matrix(Some("facet-means"))?);
-    condition(&matrix, &Diagonal(matrix.diagonal()))
+    condition(&matrix, matrix.diagonal())
 }

@@ -8,7 +8,8 @@ use unilateral::linear::{CoarseLevel, P1Level, Prolongation};
 #[test]
 fn levels_of_different_sizes_do_not_fit() {
     let matrix = || laplacian(9, 1, 2.0);
-    let prolongation = |n: usize| Arc::new(Prolongation::midpoints(parents_in_a_row(n), n / 2 + 1));
+    let prolongation =
+        |n: usize| Arc::new(Prolongation::midpoints(&parents_in_a_row(n), n / 2 + 1));
     let coarse = Arc::new(P1Level::new(laplacian(5, 1, 2.0), vec![false; 5], None).unwrap());
     let level = |coarser| P1Level::new(matrix(), vec![false; 9], coarser);
     let coarser = CoarseLevel::new(coarse.clone(), prolongation(9));
@@ -16,7 +17,7 @@ fn levels_of_different_sizes_do_not_fit() {
     // six coarse unknowns for five vertices, ten fine unknowns for nine vertices, eight flags for nine rows
     assert!(CoarseLevel::new(coarse.clone(), prolongation(11)).is_none());
     let of_too_many = vec![[0, 1]; 10];
-    let prolongation = Arc::new(Prolongation::midpoints(of_too_many, 5));
+    let prolongation = Arc::new(Prolongation::midpoints(&of_too_many, 5));
     assert!(level(CoarseLevel::new(coarse, prolongation)).is_none());
     assert!(P1Level::new(matrix(), vec![false; 8], None).is_none());
     let mut malformed = matrix();

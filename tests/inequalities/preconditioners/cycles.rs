@@ -109,7 +109,7 @@ pub fn coarser_strings(n: usize, is_held: bool) -> Option<CoarseLevel<f64>> {
     (n > 4).then(|| {
         let fixed = (0..=n / 2).map(|i| is_held && i == 0).collect();
         let level = P1Level::new(string(n / 2), fixed, coarser_strings(n / 2, is_held)).unwrap();
-        let prolongation = Prolongation::midpoints(parents_in_a_row(n + 1), n / 2 + 1);
+        let prolongation = Prolongation::midpoints(&parents_in_a_row(n + 1), n / 2 + 1);
         CoarseLevel::new(Arc::new(level), Arc::new(prolongation)).unwrap()
     })
 }

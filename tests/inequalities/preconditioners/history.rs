@@ -75,7 +75,7 @@ fn replaced_rows_of_a_smoother_equal_new_ones() {
     }
     let n = rows.len();
     let inequality = with_locations(from_rows(rows), Vec::new());
-    let prolongation = Prolongation::midpoints(parents.clone(), n_coarse);
+    let prolongation = Prolongation::midpoints(&parents, n_coarse);
     let coarser = CoarseLevel::new(Arc::new(level), Arc::new(prolongation)).unwrap();
     let spaces = CoarseSpaces::CoarseLevel(coarser);
     let set = |is_fixed: &dyn Fn(usize) -> bool| (0..n).map(is_fixed).collect::<Vec<bool>>();

@@ -53,7 +53,7 @@ fn the_residual_of_strong_couplings_between_chunks_is_that_of_the_values() {
     let matrix = from_rows(rows);
     let n = matrix.size();
     let level = Arc::new(P1Level::new(matrix.clone(), vec![false; n], None).unwrap());
-    let all = Prolongation::midpoints((0..n as u32).map(|i| [i, i]).collect(), n);
+    let all = Prolongation::midpoints(&(0..n as u32).map(|i| [i, i]).collect::<Vec<_>>(), n);
     let spaces = CoarseSpaces::CoarseLevel(CoarseLevel::new(level, Arc::new(all)).unwrap());
     let inequality = with_locations(matrix, Vec::new());
     let mut multigrid = preconditioner(&inequality, &spaces).unwrap();
@@ -82,7 +82,7 @@ fn smoothing_by_unknowns_between_chunks_leaves_the_cycle_symmetric() {
     let n_coarse = n / 2 + 1;
     let level = galerkin(&matrix, &midpoints(&parents), n_coarse);
     let level = Arc::new(P1Level::new(level, vec![false; n_coarse], None).unwrap());
-    let prolongation = Arc::new(Prolongation::midpoints(parents, n_coarse));
+    let prolongation = Arc::new(Prolongation::midpoints(&parents, n_coarse));
     let spaces = CoarseSpaces::CoarseLevel(CoarseLevel::new(level, prolongation).unwrap());
     let inequality = with_locations(matrix, Vec::new());
     let mut multigrid = preconditioner(&inequality, &spaces).unwrap();

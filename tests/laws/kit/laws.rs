@@ -1,11 +1,11 @@
 //! What the kit measures, where it is known.
 
 use unilateral::algebra::SparseMatrix;
-use unilateral::kit::spectrum::MeanJump;
 use unilateral::kit::spectrum::{
-    CholeskyMatrix, Diagonal, Lanczos, SpectrumError, negative_eigenvalues, smallest_eigenvalue,
+    MeanJump, SpectrumError, extreme_eigenvalues, negative_eigenvalues,
 };
 use unilateral::kit::{KitErrorKind, Law, LawReport, check_law, check_scheme, check_scheme_on};
+use unilateral::linear::FactorError;
 use unilateral::mesh::BoxDomain;
 use unilateral::mesh::Mesh;
 use unilateral::prelude::*;
@@ -75,9 +75,9 @@ fn differences(n: usize) -> SparseMatrix<f64> {
 fn eigenvalues_of_second_differences() {
     for n in [1, 2, 3, 7, 50, 200] {
         let matrix = differences(n);
-        let a = CholeskyMatrix::new(&matrix).unwrap();
         let sine = |k: usize| (k as f64 * std::f64::consts::PI / (2 * n + 2) as f64).sin();
-        let found = Lanczos::default().extremes(&a, &Diagonal::identity(n)).unwrap();
+        let identity = SparseMatrix::from_diagonal(vec![1.0; n]);
+        let found = extreme_eigenvalues(&matrix, &identity, 1e-10).unwrap();
         for (ours, k) in [(found.smallest, 1), (found.largest, n)] {
             let exact = 4.0 * sine(k).powi(2);
             assert!((ours - exact).abs() < 1e-11 * exact, "n = {n}: {ours} against {exact}");
@@ -87,7 +87,7 @@ fn eigenvalues_of_second_differences() {
             values: matrix.values.iter().map(|a| 2.0 * a).collect(),
             ..matrix.clone()
         };
-        let half = Lanczos::default().extremes(&a, &CholeskyMatrix::new(&twice).unwrap()).unwrap();
+        let half = extreme_eigenvalues(&matrix, &twice, 1e-10).unwrap();
         assert!((half.smallest - 0.5).abs() + (half.largest - 0.5).abs() < 1e-11, "{half:?}");
     }
 }
@@ -95,23 +95,23 @@ fn eigenvalues_of_second_differences() {
 #[test]
 fn a_spectrum_that_is_not_reached_is_an_error() {
     let matrix = differences(400);
-    let a = CholeskyMatrix::new(&matrix).unwrap();
-    let lanczos = Lanczos::default().with_tolerance(1e-10).with_max_steps(5);
-    let error = lanczos.largest(&a, &Diagonal::identity(400)).unwrap_err();
+    let identity = SparseMatrix::from_diagonal(vec![1.0; 400]);
+    let error = extreme_eigenvalues(&matrix, &identity, 0.0).unwrap_err();
     let SpectrumError::NotReached(why) = error else { panic!("{error}") };
     let residual = why.split_once("residual of ").and_then(|(_, rest)| rest.split(' ').next());
-    assert!(why.starts_with("after 5 steps ") && residual.unwrap().parse::<f64>().unwrap() > 1e-10);
-    let error = lanczos.extremes(&a, &Diagonal::identity(3)).unwrap_err();
+    assert!(why.starts_with("after ") && residual.unwrap().parse::<f64>().unwrap() > 0.0, "{why}");
+    let three = SparseMatrix::from_diagonal(vec![1.0; 3]);
+    let error = extreme_eigenvalues(&matrix, &three, 1e-10).unwrap_err();
     let sizes = "matrices of 400 and 3 rows have no common spectrum";
     assert_eq!(error, SpectrumError::Sizes(sizes.to_owned()));
-    let mut negative = Diagonal::identity(400);
-    negative.0[7] = -1e9;
-    let error = lanczos.largest(&a, &negative).unwrap_err();
-    assert!(matches!(error, SpectrumError::NotPositive(_)), "{error}");
+    let mut negative = identity;
+    negative.values[7] = -1e9;
+    let error = extreme_eigenvalues(&matrix, &negative, 1e-10).unwrap_err();
+    assert_eq!(error, SpectrumError::NotFactored(FactorError::NotPositive), "{error}");
 }
 
 #[test]
-fn eigenvalues_of_an_indefinite_matrix() {
+fn negative_eigenvalues_of_an_indefinite_matrix() {
     // eigenvalues 3 and -1, and 2
     let matrix = SparseMatrix {
         row_starts: vec![0, 2, 4, 5],
@@ -119,11 +119,6 @@ fn eigenvalues_of_an_indefinite_matrix() {
         values: vec![1.0, 2.0, 2.0, 1.0, 2.0],
     };
     assert_eq!(negative_eigenvalues(&matrix), Some(1));
-    for scale in [1.0, 1e9] {
-        let values = matrix.values.iter().map(|a| scale * a).collect();
-        let least = smallest_eigenvalue(&SparseMatrix { values, ..matrix.clone() }).unwrap();
-        assert!((least / scale + 1.0).abs() < 1e-5, "{least}");
-    }
     let without_pivot = SparseMatrix { values: vec![0.0, 2.0, 2.0, 0.0, 2.0], ..matrix };
     assert_eq!(negative_eigenvalues(&without_pivot), None);
 }

@@ -11,8 +11,6 @@ pub(super) struct CoarsestSolver<T> {
     /// The free unknowns at the time of the factorisation.
     free: Vec<u32>,
     factors: Option<Factors<T>>,
-    /// Whether the matrix of the factors has recomputed rows.
-    has_recomputed_rows: bool,
     /// Workspace: right-hand side and solution on the free unknowns.
     values: Vec<T>,
     /// The divisor of the matrices of all levels.
@@ -22,8 +20,7 @@ pub(super) struct CoarsestSolver<T> {
 impl<T: Real> CoarsestSolver<T> {
     /// The solver without factors.
     pub fn new(scale: f64) -> Self {
-        let (free, values) = (Vec::new(), Vec::new());
-        Self { free, factors: None, has_recomputed_rows: false, values, scale }
+        Self { free: Vec::new(), factors: None, values: Vec::new(), scale }
     }
 
     /// Whether there are factors.
@@ -41,17 +38,15 @@ impl<T: Real> CoarsestSolver<T> {
         let free: Vec<u32> = free.collect();
         if free.len() > MAX_COARSEST_FACTORED {
             self.factors = None;
-            level.update_smoother(self.scale)?;
-            return Ok(());
+            return level.update_smoother(self.scale);
         }
         // The smoother is discarded, because its rows are not updated while factors are used.
         level.smoother = None;
-        let has_recomputed_rows = !level.recomputed_rows.is_empty();
-        let is_same_set = self.factors.is_some() && free == self.free;
-        if !is_same_set || has_recomputed_rows || self.has_recomputed_rows {
+        if self.factors.is_none() || free != self.free || !level.outdated.is_empty() {
             self.factors = None;
             self.factors = Some(factor(level, &free)?);
-            (self.free, self.has_recomputed_rows) = (free, has_recomputed_rows);
+            self.free = free;
+            level.outdated.clear();
         }
         Ok(())
     }
@@ -76,30 +71,19 @@ impl<T: Real> CoarsestSolver<T> {
 /// # Errors
 /// See [`FactorError`].
 fn factor<T: Real>(level: &Level<'_, T>, free: &[u32]) -> Result<Factors<T>, FactorError> {
-    if level.recomputed_rows.is_empty() {
-        return Factors::new(&level.matrix, true, free);
-    }
-    let mut matrix = SparseMatrix::clone(&level.matrix);
-    for &j in &level.recomputed_rows {
-        let range = row_range(&matrix, j);
-        matrix.values[range].copy_from_slice(level.row(j as usize).1);
-    }
-    match Factors::new(&matrix, true, free) {
-        Err(FactorError::NotPositive | FactorError::Singular) => {
-            for j in 0..matrix.size() as u32 {
-                let range = row_range(&matrix, j);
-                if let Ok(k) = matrix.columns[range.clone()].binary_search(&j) {
-                    matrix.values[range.start + k] *= T::lit(1.0 + T::EPSILON.sqrt());
+    match Factors::new(&level.matrix, true, free) {
+        Err(FactorError::NotPositive | FactorError::Singular)
+            if !level.recomputed_rows.is_empty() =>
+        {
+            let mut matrix = SparseMatrix::clone(&level.matrix);
+            for i in 0..matrix.size() {
+                let (columns, values) = matrix.row_mut(i);
+                if let Ok(k) = columns.binary_search(&(i as u32)) {
+                    values[k] *= T::lit(1.0 + T::EPSILON.sqrt());
                 }
             }
             Factors::new(&matrix, true, free)
         }
-        other => other,
+        factors => factors,
     }
-}
-
-/// The positions of row `j` in the columns and values of a matrix.
-fn row_range<T>(matrix: &SparseMatrix<T>, j: u32) -> std::ops::Range<usize> {
-    let j = j as usize;
-    matrix.row_starts[j] as usize..matrix.row_starts[j + 1] as usize
 }

@@ -70,7 +70,7 @@ impl<'a, T: Real> Multigrid<'a, T> {
     /// one.
     pub fn of_element(
         matrix: Cow<'a, SparseMatrix<T>>,
-        prolongation: Prolongation<T>,
+        prolongation: Prolongation,
         level: &'a P1Level<T>,
         cell_size: usize,
     ) -> Self {
@@ -196,14 +196,14 @@ fn cycle<T: Real>(
         coarsest.solve(right_side, x);
         return;
     }
-    let Some(smoother) = &level.smoother else { return };
+    let Level { smoother: Some(smoother), fixed, .. } = level else { return };
     smoother.forward(right_side, x, &mut level.residual);
     if let (Some(prolongation), Some(coarse)) = (&level.prolongation, coarser.first_mut()) {
         let mut coarse_right_side = std::mem::take(&mut coarse.right_side);
         let mut coarse_values = std::mem::take(&mut coarse.values);
         prolongation.restrict(&level.residual, &mut coarse_right_side);
         cycle(coarser, coarsest, &coarse_right_side, &mut coarse_values);
-        prolongation.add_prolongation(&coarse_values, smoother.mask(), x);
+        prolongation.add_prolongation(&coarse_values, |i| !fixed[i], x);
         coarser[0].right_side = coarse_right_side;
         coarser[0].values = coarse_values;
     }

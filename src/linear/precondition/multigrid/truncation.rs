@@ -3,12 +3,10 @@
 //! Coarse basis functions are truncated: their coefficients at fixed unknowns of the finer level are set to zero
 //! (R. Kornhuber, Numer. Math. 69 (1994), 167-184).
 
-use std::ops::Range;
-
 use super::level::Level;
-use crate::algebra::{NO_INDEX, RectangularMatrix, SparseSum};
+use crate::algebra::{NO_INDEX, SparseMatrix, SparseSum};
 use crate::linear::precondition::prolongation::Prolongation;
-use crate::parallel::vectors::{collect, indices, positions};
+use crate::parallel::vectors::{indices, positions};
 use crate::parallel::{for_each_item, split};
 use crate::real::Real;
 
@@ -19,41 +17,43 @@ const ROWS_PER_TASK: usize = 64;
 const MAX_TASKS: usize = 32;
 
 impl<T: Real> Level<'_, T> {
-    /// Recomputes the rows that truncation at the fixed unknowns of the finer level may change, and marks all rows that
-    /// have changed since the last call as outdated. The row of a free unknown is recomputed if one of the children of
-    /// the unknown is fixed, or is coupled to a fixed unknown with a free parent, or has a recomputed row. A row that
-    /// the last call recomputed keeps its values if no child, and no unknown coupled to a child, has been fixed or
-    /// freed since the last call, and no row of a child is among `changed_rows`, the rows of the finer level that have
-    /// changed.
+    /// Recomputes the rows that truncation at the fixed unknowns of the finer level may change, gives those their
+    /// values back that it no longer changes, and marks all rows that have changed since the last call as outdated. The
+    /// row of a free unknown is recomputed if one of the children of the unknown is fixed, or is coupled to a fixed
+    /// unknown with a free parent, or has a recomputed row. A row that the last call recomputed keeps its values if no
+    /// child, and no unknown coupled to a child, has been fixed or freed since the last call, and no row of a child is
+    /// among `changed_rows`, the rows of the finer level that have changed.
     pub(super) fn recompute_rows(
         &mut self,
         (finer, changed_rows): (&Level<'_, T>, &[u32]),
-        prolongation: &Prolongation<T>,
+        prolongation: &Prolongation,
     ) {
         let (near, changed) = self.mark_children((finer, changed_rows), prolongation);
+        let has_child = |j: usize, of: &[bool]| prolongation.children(j).any(|(i, _)| of[i]);
         let fixed = &self.fixed;
-        let is_recomputed = |j: usize| !fixed[j] && prolongation.any_child(j, |i| near[i]);
-        let rows = indices(fixed.len(), is_recomputed);
-        let is_kept = collect(rows.len(), |k| {
-            let j = rows[k] as usize;
-            self.recomputed_index(j).is_some() && !prolongation.any_child(j, |i| changed[i])
-        });
-        let computed = rows.iter().zip(&is_kept).filter(|(_, is_kept)| !**is_kept);
-        let mut outdated: Vec<u32> = computed.map(|(j, _)| *j).collect();
-        let images = Images::new(finer, prolongation, &outdated);
-        let (starts, values) = self.products((&rows, &is_kept), prolongation, &images);
-        let given = self.recomputed_rows.iter().filter(|j| rows.binary_search(j).is_err());
-        outdated.extend(given);
-        outdated.sort_unstable();
+        let recomputed = indices(fixed.len(), |j| !fixed[j] && has_child(j, &near));
+        let is_in = |list: &[u32], j: u32| list.binary_search(&j).is_ok();
+        let before = std::mem::take(&mut self.recomputed_rows);
+        let is_outdated = |&j: &u32| !is_in(&before, j) || has_child(j as usize, &changed);
+        let computed: Vec<u32> = recomputed.iter().copied().filter(is_outdated).collect();
+        let given: Vec<u32> = before.iter().copied().filter(|&j| !is_in(&recomputed, j)).collect();
+        if let Some(matrix) = self.given
+            && !(computed.is_empty() && given.is_empty())
+        {
+            let own = self.matrix.to_mut();
+            for &j in &given {
+                own.row_mut(j as usize).1.copy_from_slice(matrix.row(j as usize).1);
+            }
+            let images = Images::new(finer, prolongation, &computed);
+            images.recompute(own, &computed, prolongation);
+        }
+        self.outdated = [computed, given].concat();
+        self.outdated.sort_unstable();
         if self.prolongation.is_some() {
             // the next coarser level takes the list
-            self.changed_rows.extend_from_slice(&outdated);
+            self.changed_rows.extend_from_slice(&self.outdated);
         }
-        self.outdated = outdated;
-        self.recomputed_indices = positions(self.matrix.size(), &rows);
-        self.recomputed_rows = rows;
-        self.recomputed_starts = starts;
-        self.recomputed_values = values;
+        self.recomputed_rows = recomputed;
         self.fixed_on_finer.clone_from(&finer.fixed);
     }
 
@@ -62,12 +62,12 @@ impl<T: Real> Level<'_, T> {
     fn mark_children(
         &self,
         (finer, changed_rows): (&Level<'_, T>, &[u32]),
-        prolongation: &Prolongation<T>,
+        prolongation: &Prolongation,
     ) -> (Vec<bool>, Vec<bool>) {
         let n = finer.fixed.len();
         // if all parents of a fixed unknown are fixed, as for most Dirichlet data, no free function is truncated there
         let is_truncated =
-            |i: usize| finer.fixed[i] && prolongation.any_parent(i, |j| !self.fixed[j as usize]);
+            |i: usize| finer.fixed[i] && prolongation.parents(i).any(|(j, _)| !self.fixed[j]);
         let mut near = vec![false; n];
         let mut changed = vec![false; n];
         let mark = |flags: &mut [bool], i: u32| {
@@ -82,55 +82,6 @@ impl<T: Real> Level<'_, T> {
         changed_rows.iter().for_each(|&i| changed[i as usize] = true);
         (near, changed)
     }
-
-    /// The starts and the values of rows, and the number of values after the starts: rows that are kept from the last
-    /// call, and Galerkin products for all others.
-    fn products(
-        &self,
-        (rows, is_kept): (&[u32], &[bool]),
-        prolongation: &Prolongation<T>,
-        images: &Images<T>,
-    ) -> (Vec<usize>, Vec<T>) {
-        let columns = |j: u32| self.matrix.row(j as usize).0;
-        let mut starts = Vec::with_capacity(rows.len() + 1);
-        starts.push(0);
-        let mut end = 0;
-        starts.extend(rows.iter().map(|&j| {
-            end += columns(j).len();
-            end
-        }));
-        let mut values = vec![T::lit(0.0); end];
-        let length = ROWS_PER_TASK.max(self.matrix.size() / MAX_TASKS);
-        let ranges =
-            || (0..rows.len()).step_by(length).map(|first| first..(first + length).min(rows.len()));
-        let lengths = ranges().map(|range| starts[range.end] - starts[range.start]);
-        let tasks = ranges().zip(split(&mut values, lengths)).collect();
-        for_each_item(tasks, &|_, (range, mut values): (Range<usize>, &mut [T])| {
-            let mut places = vec![NO_INDEX; self.matrix.size()];
-            for k in range {
-                let columns = columns(rows[k]);
-                let (row, tail) = values.split_at_mut(columns.len());
-                values = tail;
-                if is_kept[k] {
-                    row.copy_from_slice(self.row(rows[k] as usize).1);
-                    continue;
-                }
-                (0..).zip(columns).for_each(|(place, &column)| places[column as usize] = place);
-                prolongation.for_each_child(rows[k] as usize, |i, weight| {
-                    if let Some((columns, image)) = images.row(i) {
-                        for (&column, &value) in columns.iter().zip(image) {
-                            // products outside of the pattern are dropped
-                            if let Some(entry) = row.get_mut(places[column as usize] as usize) {
-                                *entry += weight * value;
-                            }
-                        }
-                    }
-                });
-                columns.iter().for_each(|&column| places[column as usize] = NO_INDEX);
-            }
-        });
-        (starts, values)
-    }
 }
 
 /// Rows of `A P`, with the matrix `A` of the finer level and the prolongation `P`, both restricted to free unknowns of
@@ -138,30 +89,28 @@ impl<T: Real> Level<'_, T> {
 struct Images<T> {
     /// The number of the row of each unknown of the finer level, [`NO_INDEX`] for an unknown without one.
     numbers: Vec<u32>,
-    rows: RectangularMatrix<T>,
+    rows: SparseMatrix<T>,
 }
 
 impl<T: Real> Images<T> {
     /// The rows of all free children of the unknowns `parents`.
-    fn new(finer: &Level<'_, T>, prolongation: &Prolongation<T>, parents: &[u32]) -> Self {
+    fn new(finer: &Level<'_, T>, prolongation: &Prolongation, parents: &[u32]) -> Self {
         let n = finer.fixed.len();
         let mut is_child = vec![false; n];
         for &j in parents {
-            prolongation.for_each_child(j as usize, |i, _| is_child[i] = true);
+            prolongation.children(j as usize).for_each(|(i, _)| is_child[i] = true);
         }
         let children = indices(n, |i| is_child[i] && !finer.fixed[i]);
         let numbers = positions(n, &children);
         let n_coarse = prolongation.n_coarse();
-        let rows = RectangularMatrix::by_groups(children.len(), &|range| {
+        let rows = SparseMatrix::by_groups(children.len(), &|range| {
             let mut sum = SparseSum::new(n_coarse);
-            RectangularMatrix::by_rows(range, |k, columns, values| {
-                let (neighbours, entries) = finer.row(children[k] as usize);
+            SparseMatrix::by_rows(range, |k, columns, values| {
+                let (neighbours, entries) = finer.matrix.row(children[k] as usize);
                 let free =
                     neighbours.iter().zip(entries).filter(|(j, _)| !finer.fixed[**j as usize]);
                 for (&j, &a) in free {
-                    prolongation.for_each_parent(j as usize, |parent, weight| {
-                        sum.add_term(parent, a * weight);
-                    });
+                    sum.add(a, prolongation.rows().row(j as usize));
                 }
                 sum.move_to(columns, values);
             })
@@ -169,10 +118,39 @@ impl<T: Real> Images<T> {
         Self { numbers, rows }
     }
 
-    /// Columns and values of the row of an unknown, if it has one.
-    #[inline(always)]
-    fn row(&self, i: usize) -> Option<(&[u32], &[T])> {
-        let number = self.numbers[i];
-        (number != NO_INDEX).then(|| self.rows.row(number as usize))
+    /// Replaces rows of the coarse matrix by the products of the transposed prolongation with these rows.
+    fn recompute(&self, coarse: &mut SparseMatrix<T>, rows: &[u32], prolongation: &Prolongation) {
+        let n = coarse.size();
+        let SparseMatrix { row_starts, columns, values } = coarse;
+        let start = |row: u32| row_starts[row as usize] as usize;
+        let tasks = || rows.chunks(ROWS_PER_TASK.max(n / MAX_TASKS));
+        // the values from the first row of a task on, up to the first row of the next one
+        let n_values = values.len();
+        let ends = tasks().skip(1).map(|rows| start(rows[0])).chain([n_values]);
+        let lengths = tasks().zip(ends).map(|(rows, end)| end - start(rows[0]));
+        let first = rows.first().map_or(n_values, |&row| start(row));
+        let tasks = tasks().zip(split(&mut values[first..], lengths)).collect();
+        for_each_item(tasks, &|_, (rows, values): (&[u32], &mut [T])| {
+            let mut places = vec![NO_INDEX; n];
+            for &j in rows {
+                let columns = &columns[start(j)..start(j + 1)];
+                let row = &mut values[start(j) - start(rows[0])..][..columns.len()];
+                row.fill(T::lit(0.0));
+                (0..).zip(columns).for_each(|(place, &column)| places[column as usize] = place);
+                for (i, weight) in prolongation.children(j as usize) {
+                    if self.numbers[i] == NO_INDEX {
+                        continue;
+                    }
+                    let (columns, image) = self.rows.row(self.numbers[i] as usize);
+                    for (&column, &value) in columns.iter().zip(image) {
+                        // products outside of the pattern are dropped
+                        if let Some(entry) = row.get_mut(places[column as usize] as usize) {
+                            *entry += T::lit(weight.into()) * value;
+                        }
+                    }
+                }
+                columns.iter().for_each(|&column| places[column as usize] = NO_INDEX);
+            }
+        });
     }
 }

@@ -1,0 +1,392 @@
+//! Symmetric Gauss-Seidel smoothing in single precision with blocks of one size: single unknowns, or those of a cell.
+//!
+//! Within a chunk of blocks an iteration is a Gauss-Seidel iteration, between chunks a Jacobi iteration, so that chunks
+//! run in parallel. The backward iteration is the transpose of the forward one.
+//!
+//! Let `D` be the block diagonal of the matrix `A`, `L` the strictly lower triangle within chunks, `O` the entries
+//! between chunks, and `E` a non-negative diagonal. The iteration with `M = D + E + L` reduces the energy of the error if
+//! `M + M^T - A = D + 2 E - O` is positive definite. For blocks of more than one unknown `E` is zero: `D - O` is positive
+//! definite for a sum of forms on facets each of which remains positive if the traces from one side change their sign,
+//! such as the forms of interior penalty methods with a penalty above the proven bound. For single unknowns `E` is zero
+//! in rows in which the entry of `D` is at least the sum of the entries of `|O|`; these are all rows of a matrix with
+//! negative off-diagonal entries and non-negative row sums. In other rows `E` makes `D + 2 E` larger than that sum
+//! (A. H. Baker, R. D. Falgout, T. V. Kolev, U. M. Yang, SIAM J. Sci. Comput. 33 (2011), 2864-2887). Meshes of flat
+//! tetrahedra with a numbering without locality need a positive `E`: Jacobi's iteration diverges for their matrices.
+//!
+//! An iteration is limited by memory bandwidth. Only the strictly lower triangle of each chunk is stored: by symmetry, a
+//! row of this triangle updates both the equations of its block and, once the values of the block are computed, the
+//! residuals of the preceding ones. The forward iteration therefore returns the residual without a further product.
+
+use std::array::from_fn;
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::algebra::dense::invert_positive_definite;
+use crate::linear::direct::FactorError;
+use crate::parallel::for_each_item;
+use crate::parallel::vectors::{
+    chunk_length, for_each_chunk_of_groups, map_chunks_of_groups, sum_chunks_of_two,
+};
+use crate::real::Real;
+
+/// The entry of `D + 2 E`, divided by the sum of the absolute values of the entries between chunks, in rows in which
+/// `E` is positive.
+const MARGIN: f64 = 1.1;
+
+/// The rows of a symmetric matrix, with ascending columns, and the number by which its entries are divided.
+#[derive(Clone, Copy)]
+pub(crate) struct ScaledRows<'m, T> {
+    pub row: &'m (dyn Fn(usize) -> (&'m [u32], &'m [T]) + Sync),
+    pub scale: f64,
+}
+
+/// A smoother, whatever the size of its blocks.
+pub(crate) trait Smoother<T>: Send + Sync {
+    /// Reads the given rows and the columns with the same indices anew; the pattern must be the same as before.
+    /// [`Smoother::set_fixed`] must follow.
+    fn replace_rows(&mut self, changed: &[u32], rows: ScaledRows<'_, T>);
+    /// Sets the fixed unknowns, and the unknowns `kept`, which are neither fixed nor smoothed: the forward iteration
+    /// returns their residuals, and the backward iteration does not change their values. Blocks of more than one unknown
+    /// cannot be kept.
+    ///
+    /// # Errors
+    /// [`FactorError::NotPositive`] if a block is not positive definite on its free unknowns.
+    fn set_fixed(&mut self, fixed: &[bool], kept: &[u32]) -> Result<(), FactorError>;
+    /// A forward iteration from zero: sets `x`, and `r = b - A x` on free unknowns, zero on fixed ones.
+    fn forward(&self, b: &[f32], x: &mut [f32], r: &mut [f32]);
+    /// A backward iteration from `x`. `r` is workspace.
+    fn backward(&self, b: &[f32], x: &mut [f32], r: &mut [f32]);
+}
+
+/// The smoother of a matrix with `n` rows by blocks of `size` consecutive unknowns: one, or the number of linear or
+/// quadratic functions on a simplex.
+pub(crate) fn smoother<T: Real>(
+    (n, size): (usize, usize),
+    rows: ScaledRows<'_, T>,
+) -> Box<dyn Smoother<T>> {
+    match size {
+        2 => Box::new(BlockGaussSeidel::<2>::new(n, rows)),
+        3 => Box::new(BlockGaussSeidel::<3>::new(n, rows)),
+        4 => Box::new(BlockGaussSeidel::<4>::new(n, rows)),
+        6 => Box::new(BlockGaussSeidel::<6>::new(n, rows)),
+        10 => Box::new(BlockGaussSeidel::<10>::new(n, rows)),
+        _ => Box::new(BlockGaussSeidel::<1>::new(n, rows)),
+    }
+}
+
+/// The entries of a matrix in the rows of one block and the columns of another.
+type Block<const N: usize> = [[f32; N]; N];
+
+/// The block Gauss-Seidel smoother of a matrix with blocks of `N` unknowns.
+struct BlockGaussSeidel<const N: usize> {
+    chunks: Vec<ChunkRows<N>>,
+    /// The inverses of the blocks of `D + E` on free unknowns, zero in rows and columns of others and of unknowns whose
+    /// diagonal entry is zero.
+    inverses: Vec<Block<N>>,
+    /// Which unknowns of a block are fixed; `None` if the inverse is outdated, or zero because the unknown is kept.
+    fixed: Vec<Option<[bool; N]>>,
+}
+
+/// The rows of a chunk of blocks: the diagonal blocks, the strictly lower triangle within the chunk, and all blocks
+/// outside of it.
+struct ChunkRows<const N: usize> {
+    diagonal: Vec<Block<N>>,
+    /// The diagonal `E`; empty if it is zero.
+    added: Vec<[f32; N]>,
+    /// Start of each row in `columns` and `lower`, and the number of blocks at the end.
+    starts: Vec<u32>,
+    /// For each row the preceding ones of the chunk that are coupled to it, relative to the chunk.
+    columns: Vec<u16>,
+    lower: Vec<Block<N>>,
+    /// The blocks outside of the chunk: row relative to the chunk, column, block.
+    outside: Vec<(u16, u32, Block<N>)>,
+}
+
+impl<T: Real> ScaledRows<'_, T> {
+    /// The entries in the rows of a block and the columns of another.
+    fn block<const N: usize>(&self, own: usize, other: usize) -> Block<N> {
+        from_fn(|k| {
+            let (columns, values) = (self.row)(own * N + k);
+            let mut row = [0.0; N];
+            let first = columns.partition_point(|&j| (j as usize) < other * N);
+            for (&j, a) in columns[first..].iter().zip(&values[first..]) {
+                match row.get_mut(j as usize - other * N) {
+                    Some(entry) => *entry = (a.to_f64() / self.scale) as f32,
+                    None => break,
+                }
+            }
+            row
+        })
+    }
+}
+
+impl<const N: usize> ChunkRows<N> {
+    /// The rows `range` of a matrix.
+    fn new<T: Real>(rows: ScaledRows<'_, T>, range: Range<usize>) -> Self {
+        let n = range.len();
+        let (mut starts, mut columns) = (Vec::with_capacity(n + 1), Vec::with_capacity(3 * n));
+        let (mut outside, mut others) = (Vec::new(), Vec::new());
+        starts.push(0);
+        for own in range.clone() {
+            others.clear();
+            for row in own * N..(own + 1) * N {
+                others.extend((rows.row)(row).0.iter().map(|&j| j as usize / N));
+            }
+            if N > 1 {
+                others.sort_unstable();
+                others.dedup();
+            }
+            for &other in &others {
+                if !range.contains(&other) {
+                    outside.push(((own - range.start) as u16, other as u32, [[0.0; N]; N]));
+                } else if other < own {
+                    columns.push((other - range.start) as u16);
+                }
+            }
+            starts.push(columns.len() as u32);
+        }
+        let zero = [[0.0; N]; N];
+        let (diagonal, lower) = (vec![zero; n], vec![zero; columns.len()]);
+        let mut chunk = Self { diagonal, added: Vec::new(), starts, columns, lower, outside };
+        range.clone().for_each(|own| chunk.read_row(rows, own, range.start));
+        chunk.update_added();
+        chunk
+    }
+
+    /// Reads the entries of a row; the first row of the chunk is given.
+    fn read_row<T: Real>(&mut self, rows: ScaledRows<'_, T>, own: usize, first: usize) {
+        let k = own - first;
+        self.diagonal[k] = rows.block(own, own);
+        for at in self.starts[k] as usize..self.starts[k + 1] as usize {
+            self.lower[at] = rows.block(own, first + usize::from(self.columns[at]));
+        }
+        let start = self.first_outside(k);
+        let of_row = self.outside[start..].iter_mut().take_while(|entry| usize::from(entry.0) == k);
+        for (_, other, block) in of_row {
+            let other = *other as usize;
+            // of two symmetric blocks that in the later row is read, so that both rows store the same
+            *block = rows.block(own.max(other), own.min(other));
+            if other > own {
+                let transpose = *block;
+                *block = from_fn(|i| from_fn(|j| transpose[j][i]));
+            }
+        }
+    }
+
+    /// The position of the first block outside of the chunk in row `k`, relative to the chunk, or after it.
+    fn first_outside(&self, k: usize) -> usize {
+        self.outside.partition_point(|entry| usize::from(entry.0) < k)
+    }
+
+    /// Computes the diagonal `E`.
+    fn update_added(&mut self) {
+        self.added.clear();
+        if N > 1 {
+            return;
+        }
+        for of_row in self.outside.chunk_by(|one, other| one.0 == other.0) {
+            let k = usize::from(of_row[0].0);
+            let sum: f64 = of_row.iter().map(|entry| f64::from(entry.2[0][0].abs())).sum();
+            let diagonal = f64::from(self.diagonal[k][0][0]);
+            // sum and diagonal entry are equal up to rounding in some rows of second differences: no increase there
+            if sum > diagonal * (1.0 + 1e-4) {
+                self.added.resize(self.diagonal.len(), [0.0; N]);
+                self.added[k][0] = (0.5 * (MARGIN * sum - diagonal)) as f32;
+            }
+        }
+    }
+
+    /// The blocks of a row in the strictly lower triangle, each with the number of the other row relative to the chunk.
+    #[inline(always)]
+    fn lower_row(&self, row: usize) -> impl Iterator<Item = (usize, &Block<N>)> {
+        let range = self.starts[row] as usize..self.starts[row + 1] as usize;
+        let columns = self.columns[range.clone()].iter().map(|&other| usize::from(other));
+        columns.zip(&self.lower[range])
+    }
+
+    /// The inverse of a block of `D + E` on its free unknowns; `None` if the block is not positive definite there.
+    fn inverse(&self, row: usize, fixed: &[bool; N]) -> Option<Block<N>> {
+        let diagonal = &self.diagonal[row];
+        let is_out: [bool; N] = from_fn(|k| fixed[k] || diagonal[k][k] == 0.0);
+        let mut block = [[0.0_f64; N]; N];
+        for i in (0..N).filter(|&i| !is_out[i]) {
+            for j in (0..N).filter(|&j| !is_out[j]) {
+                // the matrix is symmetric up to rounding errors only
+                block[i][j] = 0.5 * f64::from(diagonal[i][j] + diagonal[j][i]);
+            }
+            block[i][i] += self.added.get(row).map_or(0.0, |added| f64::from(added[i]));
+        }
+        invert_positive_definite(block.as_flattened_mut(), N, &is_out)
+            .then(|| block.map(|row| row.map(|a| a as f32)))
+    }
+}
+
+impl<const N: usize> BlockGaussSeidel<N> {
+    /// The smoother of a matrix with `n` rows. [`Smoother::set_fixed`] must follow.
+    fn new<T: Real>(n: usize, rows: ScaledRows<'_, T>) -> Self {
+        let chunks = map_chunks_of_groups(n, N, |range| {
+            ChunkRows::new(rows, range.start / N..range.end / N)
+        });
+        Self { chunks, inverses: vec![[[0.0; N]; N]; n / N], fixed: vec![None; n / N] }
+    }
+
+    /// The number of blocks in a chunk.
+    fn chunk_length(&self) -> usize {
+        chunk_length(N * self.inverses.len(), N) / N
+    }
+}
+
+impl<T: Real, const N: usize> Smoother<T> for BlockGaussSeidel<N> {
+    fn replace_rows(&mut self, changed: &[u32], rows: ScaledRows<'_, T>) {
+        let length = self.chunk_length();
+        let mut replaced: Vec<usize> = changed.iter().map(|&i| i as usize / N).collect();
+        for k in 0..replaced.len() {
+            // a preceding row of another chunk stores entries of this one
+            let (own, of_chunk) = (replaced[k] % length, &self.chunks[replaced[k] / length]);
+            let first = replaced[k] - own;
+            let outside = of_chunk.outside[of_chunk.first_outside(own)..].iter();
+            let of_row = outside.take_while(|entry| usize::from(entry.0) == own);
+            let others: Vec<usize> = of_row.map(|entry| entry.1 as usize).collect();
+            replaced.extend(others.into_iter().filter(|&i| i < first));
+        }
+        replaced.sort_unstable();
+        replaced.dedup();
+        for of_chunk in replaced.chunk_by(|one, other| one / length == other / length) {
+            let first = of_chunk[0] / length * length;
+            let chunk = &mut self.chunks[first / length];
+            let range = first..first + chunk.diagonal.len();
+            of_chunk.iter().for_each(|&own| chunk.read_row(rows, own, first));
+            chunk.update_added();
+            // what is added to the diagonal may have changed in any row
+            self.fixed[range].fill(None);
+        }
+    }
+
+    fn set_fixed(&mut self, fixed: &[bool], kept: &[u32]) -> Result<(), FactorError> {
+        let length = self.chunk_length();
+        let fixed = fixed.as_chunks::<N>().0.chunks(length);
+        let blocks = self.inverses.chunks_mut(length).zip(self.fixed.chunks_mut(length));
+        let tasks = self.chunks.iter().zip(fixed).zip(blocks).collect();
+        let is_positive = AtomicBool::new(true);
+        for_each_item(tasks, &|_,
+                               ((chunk, fixed), (inverses, known)): (
+            (&ChunkRows<N>, &[[bool; N]]),
+            (&mut [Block<N>], &mut [Option<[bool; N]>]),
+        )| {
+            for (k, (inverse, known)) in inverses.iter_mut().zip(known).enumerate() {
+                if *known == Some(fixed[k]) {
+                    continue;
+                }
+                match chunk.inverse(k, &fixed[k]) {
+                    Some(block) => (*inverse, *known) = (block, Some(fixed[k])),
+                    None => return is_positive.store(false, Ordering::Relaxed),
+                }
+            }
+        });
+        for &i in kept {
+            self.inverses[i as usize / N] = [[0.0; N]; N];
+            self.fixed[i as usize / N] = None;
+        }
+        if is_positive.into_inner() { Ok(()) } else { Err(FactorError::NotPositive) }
+    }
+
+    fn forward(&self, b: &[f32], x: &mut [f32], r: &mut [f32]) {
+        let length = chunk_length(x.len(), N);
+        sum_chunks_of_two(x, r, N, |range, x, r| {
+            let chunk = &self.chunks[range.start / length];
+            let (x, r) = (x.as_chunks_mut::<N>().0, r.as_chunks_mut::<N>().0);
+            let inverses = &self.inverses[range.start / N..range.end / N];
+            let b = b[range].as_chunks::<N>().0;
+            for (row, (b, inverse)) in b.iter().zip(inverses).enumerate() {
+                let mut sum = *b;
+                chunk.lower_row(row).for_each(|(j, a)| subtract_product(a, &x[j], &mut sum));
+                let value = product(inverse, &sum);
+                x[row] = value;
+                let added = chunk.added.get(row).unwrap_or(&[0.0; N]);
+                // an unknown that is not smoothed has the value zero; residuals of fixed ones are set to zero below
+                let is_smoothed = |k: usize| inverse[k][k] != 0.0;
+                r[row] = from_fn(|k| if is_smoothed(k) { added[k] * value[k] } else { sum[k] });
+                chunk.lower_row(row).for_each(|(j, a)| subtract_transposed(a, &value, &mut r[j]));
+            }
+            0.0
+        });
+        let x = x.as_chunks::<N>().0;
+        for_each_chunk_of_groups(r, N, |range, r| {
+            let r = r.as_chunks_mut::<N>().0;
+            for (row, other, a) in &self.chunks[range.start / length].outside {
+                subtract_product(a, &x[*other as usize], &mut r[usize::from(*row)]);
+            }
+            for (r, fixed) in r.iter_mut().zip(&self.fixed[range.start / N..range.end / N]) {
+                let is_fixed = fixed.unwrap_or([false; N]);
+                *r = from_fn(|k| if is_fixed[k] { 0.0 } else { r[k] });
+            }
+        });
+    }
+
+    fn backward(&self, b: &[f32], x: &mut [f32], r: &mut [f32]) {
+        let length = chunk_length(x.len(), N);
+        let old = x.as_chunks::<N>().0;
+        for_each_chunk_of_groups(r, N, |range, r| {
+            r.copy_from_slice(&b[range.clone()]);
+            let r = r.as_chunks_mut::<N>().0;
+            for (row, other, a) in &self.chunks[range.start / length].outside {
+                subtract_product(a, &old[*other as usize], &mut r[usize::from(*row)]);
+            }
+        });
+        sum_chunks_of_two(x, r, N, |range, x, r| {
+            let chunk = &self.chunks[range.start / length];
+            let (x, r) = (x.as_chunks_mut::<N>().0, r.as_chunks_mut::<N>().0);
+            let inverses = &self.inverses[range.start / N..range.end / N];
+            for (row, inverse) in inverses.iter().enumerate().rev() {
+                let mut sum = r[row];
+                if let Some(added) = chunk.added.get(row) {
+                    sum = from_fn(|k| sum[k] + added[k] * x[row][k]);
+                }
+                chunk.lower_row(row).for_each(|(j, a)| subtract_product(a, &x[j], &mut sum));
+                let smoothed = product(inverse, &sum);
+                // the value of a fixed unknown is zero since the forward iteration
+                let is_smoothed = |k: usize| inverse[k][k] != 0.0;
+                let value = from_fn(|k| if is_smoothed(k) { smoothed[k] } else { x[row][k] });
+                x[row] = value;
+                chunk.lower_row(row).for_each(|(j, a)| subtract_transposed(a, &value, &mut r[j]));
+            }
+            0.0
+        });
+    }
+}
+
+/// `y = y - B x`.
+#[inline(always)]
+fn subtract_product<const N: usize>(block: &Block<N>, x: &[f32; N], y: &mut [f32; N]) {
+    for (row, y) in block.iter().zip(y) {
+        let mut sum = 0.0;
+        for j in 0..N {
+            sum += row[j] * x[j];
+        }
+        *y -= sum;
+    }
+}
+
+/// `y = y - B^T x`.
+#[inline(always)]
+fn subtract_transposed<const N: usize>(block: &Block<N>, x: &[f32; N], y: &mut [f32; N]) {
+    let mut sum = [0.0; N];
+    for (row, &x) in block.iter().zip(x) {
+        for j in 0..N {
+            sum[j] += row[j] * x;
+        }
+    }
+    y.iter_mut().zip(sum).for_each(|(y, sum)| *y -= sum);
+}
+
+/// `B x` for a symmetric block.
+#[inline(always)]
+fn product<const N: usize>(block: &Block<N>, x: &[f32; N]) -> [f32; N] {
+    let mut y = [0.0; N];
+    for (column, &x) in block.iter().zip(x) {
+        for j in 0..N {
+            y[j] += column[j] * x;
+        }
+    }
+    y
+}
