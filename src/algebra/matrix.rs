@@ -132,17 +132,6 @@ impl<T: Real> SparseMatrix<T> {
             }
         });
     }
-    /// The residual `b - A x` in the scalar.
-    ///
-    /// # Panics
-    /// If `b` is longer than the matrix has rows, or `x` shorter.
-    pub fn residual(&self, b: &[T], x: &[T]) -> Vec<T> {
-        let mut r = vec![T::lit(0.0); b.len()];
-        for_each_chunk(&mut r, |range, r| {
-            r.iter_mut().zip(range).for_each(|(r, i)| *r = b[i] - self.row_dot(i, x));
-        });
-        r
-    }
     /// The transpose of a matrix with this number of columns.
     #[must_use]
     pub fn transpose(&self, n_columns: usize) -> Self {

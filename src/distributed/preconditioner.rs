@@ -228,10 +228,6 @@ impl OwnRows for RowsOfBlock<'_> {
 }
 
 impl BlockSolver<f64> for BlockOverParts {
-    fn is_collective(&self) -> bool {
-        true
-    }
-
     fn factor(&mut self, block: &SparseMatrix<f64>, unknowns: &[u32]) -> Result<(), FactorError> {
         let over_parts = &*self.over_parts;
         let is_own = |&k: &u32| over_parts.owns(unknowns[k as usize] as usize);

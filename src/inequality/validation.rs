@@ -115,7 +115,9 @@ fn factor_free_unknowns<T: Real>(inequality: &Inequality<T>) -> Result<(), Facto
     if let Some(penalised) = &inequality.penalised {
         let mut is_free = vec![false; inequality.size()];
         free.iter().for_each(|&i| is_free[i as usize] = true);
-        return StaticCondensation::new(penalised, &inequality.matrix).factor(&is_free).map(|_| ());
+        return StaticCondensation::new(penalised, &inequality.matrix)
+            .factor(&is_free, &[])
+            .map(|_| ());
     }
     Factors::new(&symmetric_part(inequality), true, &free).map(|_| ())
 }

@@ -60,20 +60,6 @@ pub(crate) fn map_items<A: Send, R: Send>(
     })
 }
 
-/// The values of two functions, which run at the same time if `at_once` and there is more than one thread, else one
-/// after the other.
-pub(crate) fn both<A: Send, B: Send>(
-    at_once: bool,
-    one: impl FnOnce() -> A + Send,
-    other: impl FnOnce() -> B + Send,
-) -> (A, B) {
-    if at_once && rayon::current_num_threads() > 1 {
-        rayon::join(one, other)
-    } else {
-        (one(), other())
-    }
-}
-
 /// Calls `work` with the index and the value of every item, one task each.
 pub(crate) fn for_each_item<A: Send>(items: Vec<A>, work: &(dyn Fn(usize, A) + Sync)) {
     map_items(items, work);

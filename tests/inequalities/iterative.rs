@@ -215,7 +215,8 @@ fn the_bound_on_the_error_is_one() {
         let solution = with(LinearMethod::Iterative).solve(&inequality);
         let energy = |u: &[f64]| {
             let zero = vec![0.0; u.len()];
-            let r = inequality.matrix.residual(&zero, u);
+            let mut r = zero.clone();
+            inequality.matrix.residual_f64(&zero, u, &mut r);
             -u.iter().zip(&r).map(|(u, r)| u * r).sum::<f64>()
         };
         let difference: Vec<f64> = exact.iter().zip(&solution.values).map(|(a, b)| a - b).collect();

@@ -25,7 +25,8 @@ fn inequality<const D: usize>(
 
 /// The energy norm.
 fn energy(inequality: &Inequality<f64>, u: &[f64]) -> f64 {
-    let r = inequality.matrix.residual(&vec![0.0; u.len()], u);
+    let mut r = vec![0.0; u.len()];
+    inequality.matrix.residual_f64(&vec![0.0; u.len()], u, &mut r);
     (-u.iter().zip(&r).map(|(u, r)| u * r).sum::<f64>()).sqrt()
 }
 

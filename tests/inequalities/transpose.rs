@@ -38,7 +38,7 @@ fn transposes_are_those_of_a_sort_with_any_number_of_threads() {
         let expected = sorted(&matrix);
         for threads in [1, 3] {
             let pool = ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            let found = pool.install(|| matrix.transpose());
+            let found = pool.install(|| matrix.transpose(matrix.size()));
             assert!(found == expected, "{n} rows, {threads} threads");
         }
     }

@@ -147,7 +147,7 @@ impl<T: Real> LinearSolver<T> for DirectSolver<'_, T> {
         self.factors = Some(match &self.condensation {
             Some(condensation) => {
                 let is_inactive: Vec<bool> = eliminated.iter().map(|&e| !e).collect();
-                MatrixFactors::Condensed(Box::new(condensation.factor(&is_inactive)?))
+                MatrixFactors::Condensed(Box::new(condensation.factor(&is_inactive, &[])?))
             }
             None => {
                 let Inequality { matrix, symmetric, .. } = self.inequality;

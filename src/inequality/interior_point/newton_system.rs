@@ -68,7 +68,7 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
     pub fn factor(&mut self, diagonal: &[f64]) -> Result<MatrixFactors<T>, FactorError> {
         if let Some(condensation) = self.condensation {
             return condensation
-                .factor_shifted(&self.is_free, diagonal)
+                .factor(&self.is_free, diagonal)
                 .map(|factors| MatrixFactors::Condensed(Box::new(factors)));
         }
         let factors = if self.inequality.symmetric {

@@ -108,15 +108,13 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
                 rows[row as usize].extend(means().filter(|&m| m <= row));
             }
         }
-        let mut pattern = empty();
-        for mut row in rows {
+        SparseMatrix::by_rows(0..n_means, |row, columns, values| {
+            let row = &mut rows[row];
             row.sort_unstable();
             row.dedup();
-            pattern.columns.extend(row);
-            pattern.row_starts.push(pattern.columns.len() as u32);
-        }
-        pattern.values = vec![T::lit(0.0); pattern.columns.len()];
-        pattern
+            columns.extend(&*row);
+            values.extend(row.iter().map(|_| T::lit(0.0)));
+        })
     }
 
     pub(super) fn n_blocks(&self) -> usize {
@@ -162,20 +160,12 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         if self.mean(side) == NO_INDEX { weight } else { 2.0 * weight }
     }
 
-    /// The factors on the free unknowns.
+    /// The factors of the matrix with `K + D` in place of `K` on the free unknowns; `shift` is the nonnegative diagonal of
+    /// `D`, or empty for zero.
     ///
     /// # Errors
     /// See [`FactorError`].
-    pub fn factor(&self, is_free: &[bool]) -> Result<CondensedFactors<T>, FactorError> {
-        self.factor_shifted(is_free, &[])
-    }
-
-    /// [`StaticCondensation::factor`] for `K + D` in place of `K`; `shift` is the nonnegative diagonal of `D`, or empty
-    /// for zero.
-    ///
-    /// # Errors
-    /// See [`FactorError`].
-    pub fn factor_shifted(
+    pub fn factor(
         &self,
         is_free: &[bool],
         shift: &[f64],
@@ -220,12 +210,11 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
             let n = n_free + sides.len();
             let means = || sides.iter().map(|&side| self.mean(side)).enumerate();
             for (i, row) in means().filter(|&(_, mean)| mean != NO_INDEX) {
-                let columns = matrix.row(row as usize).0.to_vec();
-                let start = matrix.row_starts[row as usize] as usize;
+                let (columns, values) = matrix.row_mut(row as usize);
                 for (j, column) in means().filter(|&(_, mean)| mean <= row) {
                     if let Ok(k) = columns.binary_search(&column) {
                         let entry = -inverse[(n_free + i) * n + n_free + j];
-                        matrix.values[start + k] += T::lit(entry);
+                        values[k] += T::lit(entry);
                     }
                 }
             }
@@ -257,9 +246,4 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         }
         [free, fixed]
     }
-}
-
-/// The matrix without rows.
-fn empty<T>() -> SparseMatrix<T> {
-    SparseMatrix { row_starts: vec![0], columns: Vec::new(), values: Vec::new() }
 }

@@ -29,6 +29,7 @@ const LEAST_SQUARES_FACTOR: f64 = 0.99;
 /// Restarted GMRES. It minimises the preconditioned norm `(r . B r)^(1/2)` of [`StoppingRule`]. A cycle is the part of
 /// a run between two restarts. The vectors are kept for all runs.
 pub(crate) struct Gmres<'m, T> {
+    matrix: &'m SparseMatrix<T>,
     /// The distribution of the unknowns over the parts of a mesh; unknowns that other parts own are fixed, and zero in
     /// preconditioned residuals.
     distribution: &'m dyn Distribution,
@@ -40,16 +41,16 @@ pub(crate) struct Gmres<'m, T> {
 }
 
 impl<'m, T: Real> Gmres<'m, T> {
-    /// The method for matrices of this size.
-    pub fn new(size: usize, distribution: &'m dyn Distribution) -> Self {
-        Self { distribution, basis: vec![zeros(size)], directions: vec![zeros(size)] }
+    /// The method for a matrix.
+    pub fn new(matrix: &'m SparseMatrix<T>, distribution: &'m dyn Distribution) -> Self {
+        let vectors = || vec![zeros(matrix.size())];
+        Self { matrix, distribution, basis: vectors(), directions: vectors() }
     }
 
     /// Corrects the iterate `(x, r)`, `r` the residual of `x` on free unknowns and zero on fixed ones,
     /// before and after the call.
     pub fn solve(
         &mut self,
-        matrix: &SparseMatrix<T>,
         fixed: &[bool],
         preconditioner: &mut dyn Preconditioner<T>,
         (x, r): (&mut [T], &mut [T]),
@@ -79,7 +80,6 @@ impl<'m, T: Real> Gmres<'m, T> {
                     let goal = target.max(LEAST_CYCLE_RATIO * run.residual_norm);
                     let max_dimension = remaining.min(RESTART);
                     let hessenberg = self.arnoldi(
-                        matrix,
                         fixed,
                         preconditioner,
                         r,
@@ -98,7 +98,7 @@ impl<'m, T: Real> Gmres<'m, T> {
                     }
                     last_cycle = Some((run.residual_norm, hessenberg.size()));
                     let (weights, _) = hessenberg.least_squares(run.residual_norm);
-                    self.correct(matrix, fixed, weights.as_slice(), (x, r));
+                    self.correct(fixed, weights.as_slice(), (x, r));
                     continue;
                 }
             };
@@ -111,13 +111,13 @@ impl<'m, T: Real> Gmres<'m, T> {
     /// contain `B r`.
     fn arnoldi(
         &mut self,
-        matrix: &SparseMatrix<T>,
         fixed: &[bool],
         preconditioner: &mut dyn Preconditioner<T>,
         r: &[T],
         (initial, goal): (f64, f64),
         max_dimension: usize,
     ) -> HessenbergMatrix {
+        let matrix = self.matrix;
         let mut hessenberg = HessenbergMatrix::default();
         // the norm of the last basis vector, which is not yet scaled
         let mut norm = initial;
@@ -162,13 +162,7 @@ impl<'m, T: Real> Gmres<'m, T> {
 
     /// Adds the combination of the directions with the given weights to `x`, and subtracts the matrix times
     /// this combination from `r` on free unknowns.
-    fn correct(
-        &mut self,
-        matrix: &SparseMatrix<T>,
-        fixed: &[bool],
-        weights: &[f64],
-        (x, r): (&mut [T], &mut [T]),
-    ) {
+    fn correct(&mut self, fixed: &[bool], weights: &[f64], (x, r): (&mut [T], &mut [T])) {
         let directions = &self.directions;
         let change = &mut self.basis[0];
         sum_chunks_of_two(change, x, 1, |range, change, x| {
@@ -182,7 +176,7 @@ impl<'m, T: Real> Gmres<'m, T> {
             x.iter_mut().zip(change).for_each(|(x, &mut change)| *x += change);
             0.0
         });
-        let change = &self.basis[0];
+        let (change, matrix) = (&self.basis[0], self.matrix);
         for_each_chunk(r, |range, r| {
             for (i, r) in range.zip(r) {
                 if !fixed[i] {

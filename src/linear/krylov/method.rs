@@ -22,7 +22,7 @@ pub(crate) enum KrylovMethod<'m, T> {
     /// For symmetric matrices.
     ConjugateGradients(ConjugateGradients<'m, T>),
     /// For all others.
-    Gmres(&'m SparseMatrix<T>, Gmres<'m, T>),
+    Gmres(Gmres<'m, T>),
 }
 
 impl<'m, T: Real> KrylovMethod<'m, T> {
@@ -31,7 +31,7 @@ impl<'m, T: Real> KrylovMethod<'m, T> {
         let (matrix, distribution) = (&inequality.matrix, inequality.distribution());
         match inequality.symmetric {
             true => Self::ConjugateGradients(ConjugateGradients::new(matrix, distribution)),
-            false => Self::Gmres(matrix, Gmres::new(matrix.size(), distribution)),
+            false => Self::Gmres(Gmres::new(matrix, distribution)),
         }
     }
 
@@ -47,9 +47,7 @@ impl<'m, T: Real> KrylovMethod<'m, T> {
     ) -> KrylovRun {
         match self {
             Self::ConjugateGradients(method) => method.solve(fixed, preconditioner, iterate, rule),
-            Self::Gmres(matrix, method) => {
-                method.solve(matrix, fixed, preconditioner, iterate, rule)
-            }
+            Self::Gmres(method) => method.solve(fixed, preconditioner, iterate, rule),
         }
     }
 }

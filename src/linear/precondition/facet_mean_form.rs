@@ -2,10 +2,9 @@
 //!
 //! The facet mean function of a side is the linear function on the cell of the side with mean one on its facet
 //! and mean zero on the other facets of the cell: the Crouzeix-Raviart basis. Sides have the indices of
-//! [`SidePenalties`].
+//! [`SidePenalties`](crate::algebra::SidePenalties).
 
-use crate::algebra::{PenalisedMatrix, SidePenalties};
-use crate::parallel::vectors::{for_each_chunk, zeros};
+use crate::algebra::PenalisedMatrix;
 use crate::real::Real;
 
 /// The value at a vertex of the facet mean function of a facet, in a cell of `cell_size` vertices; facet `i` is
@@ -15,21 +14,8 @@ pub(super) fn facet_mean_function<T: Real>(cell_size: usize, vertex: usize, face
     T::lit(if vertex == facet { 2.0 - cell_size as f64 } else { 1.0 })
 }
 
-/// The form `K + M^T S M` of the facet mean function of each side with itself.
-pub(crate) fn diagonal<T: Real>(
-    penalised: &PenalisedMatrix<T>,
-    penalties: &SidePenalties<T>,
-) -> Vec<T> {
-    let mut diagonal = zeros(penalties.penalty.len());
-    for_each_chunk(&mut diagonal, |range, diagonal| {
-        for (d, side) in diagonal.iter_mut().zip(range) {
-            *d = stiffness(penalised, [side, side], penalties.are_means) + penalties.penalty[side];
-        }
-    });
-    diagonal
-}
-
-/// The stiffness form of the facet mean functions of two sides of a cell; `are_means` is that of [`SidePenalties`].
+/// The stiffness form of the facet mean functions of two sides of a cell; `are_means` is that of
+/// [`SidePenalties`](crate::algebra::SidePenalties).
 pub(super) fn stiffness<T: Real>(
     penalised: &PenalisedMatrix<T>,
     [one, other]: [usize; 2],

@@ -10,16 +10,13 @@ use std::borrow::Cow;
 
 use super::coarse_level::P1Level;
 use super::crouzeix_raviart_space::CrouzeixRaviartSpace;
-use super::facet_mean_form::diagonal;
+use super::facet_mean_form::stiffness;
 use super::mixed_block::{BlockFactors, BlockSolver, MixedBlock};
 use super::multigrid::Multigrid;
-use super::preconditioner::Preconditioner;
+use super::preconditioner::{FacetMeansSolver, Preconditioner};
 use crate::algebra::{DofLocation, NO_INDEX, PenalisedMatrix, SidePenalties, SparseMatrix};
 use crate::linear::direct::FactorError;
-use crate::parallel::vectors::{
-    all, chunk_length, flags, for_each_chunk, for_each_chunk_of_groups, map_chunks,
-};
-use crate::parallel::{both, map_items};
+use crate::parallel::vectors::{all, collect, for_each_chunk, for_each_chunk_of_groups, indices};
 use crate::real::Real;
 
 /// The sum of a diagonal correction of jumps, a solution with factors on cells with free and fixed vertex values
@@ -71,37 +68,6 @@ struct SideCorrections<T> {
     inverse_jump: Vec<T>,
 }
 
-/// A preconditioner of the stiffness on Crouzeix-Raviart functions.
-pub(crate) trait FacetMeansSolver<T>: Send + Sync {
-    /// Sets the facets without a function, the facets with a function that conforming linear functions
-    /// alone may correct, and the vertices at which conforming linear functions vanish.
-    ///
-    /// # Errors
-    /// [`FactorError`] if a coarse matrix is not positive definite.
-    fn set_fixed(
-        &mut self,
-        fixed_facets: &[bool],
-        kept_facets: &[u32],
-        fixed_vertices: &[bool],
-    ) -> Result<(), FactorError>;
-    /// Sets `means` to the correction of the means on facets for a residual that is zero on facets without a function.
-    fn apply(&mut self, residual: &[T], means: &mut [T]);
-}
-
-impl<T: Real> FacetMeansSolver<T> for Multigrid<'_, T> {
-    fn set_fixed(
-        &mut self,
-        fixed_facets: &[bool],
-        kept_facets: &[u32],
-        fixed_vertices: &[bool],
-    ) -> Result<(), FactorError> {
-        self.set_fixed_and_kept(fixed_facets, kept_facets, fixed_vertices)
-    }
-    fn apply(&mut self, residual: &[T], means: &mut [T]) {
-        Multigrid::apply(self, residual, means);
-    }
-}
-
 impl<'a, T: Real> MeanJumpSplitting<'a, T> {
     /// The preconditioner of `matrix`, which contains the assembled entries of `penalised`; `None` if `penalised` is no
     /// penalty on jumps of means of discontinuous linear functions alone, or if
@@ -144,7 +110,9 @@ impl<'a, T: Real> MeanJumpSplitting<'a, T> {
         {
             return None;
         }
-        let diagonal = diagonal(penalised, &penalties);
+        let diagonal = collect(penalised.size(), |side| {
+            stiffness(penalised, [side, side], penalties.are_means) + penalties.penalty[side]
+        });
         let zero = T::lit(0.0);
         let n = matrix.size();
         let space = CrouzeixRaviartSpace::new(&penalties);
@@ -188,15 +156,8 @@ enum SideState {
 impl<T: Real> MeanJumpSplitting<'_, T> {
     /// Sets the states of all sides by the fixed unknowns.
     fn set_side_states(&mut self) {
-        let (fixed, size) = (&self.fixed, self.penalties.cell_size);
-        if self.penalties.are_means {
-            for_each_chunk(&mut self.states, |range, states| {
-                for (state, &fixed) in states.iter_mut().zip(&fixed[range]) {
-                    *state = if fixed { SideState::Fixed } else { SideState::Free };
-                }
-            });
-            return;
-        }
+        let size = if self.penalties.are_means { 1 } else { self.penalties.cell_size };
+        let fixed = &self.fixed;
         for_each_chunk_of_groups(&mut self.states, size, |range, states| {
             let cells = states.chunks_exact_mut(size).zip(fixed[range].chunks_exact(size));
             for (states, fixed) in cells {
@@ -215,93 +176,59 @@ impl<T: Real> MeanJumpSplitting<'_, T> {
     /// [`FactorError::NotPositive`] if the form of a corrected function with itself is not positive.
     fn set_side_corrections(&mut self) -> Result<(), FactorError> {
         let Self { penalties, diagonal, states, sides, mixed_block, fixed, .. } = self;
-        let length = chunk_length(states.len(), 1);
-        mixed_block.vertex_values.clear();
-        mixed_block.sides.clear();
-        // the free vertex values and the sides of the mixed block, of one chunk of sides
-        let of_chunk = |k: usize, (are_pairs, inverse_jumps): (&mut [bool], &mut [T])| {
-            let (mut vertex_values, mut mixed_sides) = (Vec::new(), Vec::new());
-            let corrections = are_pairs.iter_mut().zip(inverse_jumps);
-            for (s, (is_pair, inverse_jump)) in (k * length..).zip(corrections) {
-                (*is_pair, *inverse_jump) = (false, T::lit(0.0));
-                if states[s] != SideState::Free {
-                    if !fixed[s] {
-                        vertex_values.push(s as u32);
-                    }
-                    continue;
-                }
-                let (own, opposite) = (diagonal[s], penalties.opposite[s]);
-                match states.get(opposite as usize) {
-                    Some(SideState::Free) => {
-                        let (other, penalty) = (diagonal[opposite as usize], penalties.penalty[s]);
-                        *is_pair = true;
-                        *inverse_jump = invert(own + other + (penalty + penalty))?;
-                    }
-                    Some(SideState::Mixed) => {
-                        *inverse_jump = invert(own)?;
-                        mixed_sides.push(s as u32);
-                    }
-                    Some(SideState::Fixed) => *inverse_jump = invert(own)?,
-                    None if penalties.has_jump(s) => *inverse_jump = invert(own)?,
-                    None => {}
-                }
+        let (n, zero) = (states.len(), T::lit(0.0));
+        let is_free = |s: usize| states[s] == SideState::Free;
+        let opposite = |s: usize| states.get(penalties.opposite[s] as usize).copied();
+        mixed_block.vertex_values = indices(n, |s| !is_free(s) && !fixed[s]);
+        mixed_block.sides = indices(n, |s| is_free(s) && opposite(s) == Some(SideState::Mixed));
+        sides.is_pair = collect(n, |s| is_free(s) && opposite(s) == Some(SideState::Free));
+        // the form of the corrected function with itself
+        let form = |s: usize| match opposite(s) {
+            _ if !is_free(s) => None,
+            Some(SideState::Free) => {
+                let other = diagonal[penalties.opposite[s] as usize];
+                Some(diagonal[s] + other + (penalties.penalty[s] + penalties.penalty[s]))
             }
-            Ok((vertex_values, mixed_sides))
+            Some(_) => Some(diagonal[s]),
+            None => penalties.has_jump(s).then(|| diagonal[s]),
         };
-        let chunks = sides.is_pair.chunks_mut(length).zip(sides.inverse_jump.chunks_mut(length));
-        for found in map_items(chunks.collect(), &of_chunk) {
-            let (vertex_values, mixed_sides) = found?;
-            mixed_block.vertex_values.extend(vertex_values);
-            mixed_block.sides.extend(mixed_sides);
+        sides.inverse_jump = collect(n, |s| form(s).map_or(zero, |form| T::lit(1.0) / form));
+        match all(n, |s| form(s).is_none_or(|form| form > zero)) {
+            true => Ok(()),
+            false => Err(FactorError::NotPositive),
         }
-        Ok(())
     }
 
     /// Marks the vertices that have a fixed value in a cell.
     fn set_fixed_vertices(&mut self) {
-        let n = self.fixed_vertices.len();
-        if n == 0 {
-            return;
+        let Self { fixed_vertices, fixed, locations, .. } = self;
+        if !fixed_vertices.is_empty() {
+            fixed_vertices.fill(false);
+            for (location, _) in locations.iter().zip(fixed).filter(|(_, fixed)| **fixed) {
+                location.vertices().iter().for_each(|&v| fixed_vertices[v as usize] = true);
+            }
         }
-        self.fixed_vertices = flags(n, |set| {
-            map_chunks(self.fixed.len(), |range| {
-                for i in range.filter(|&i| self.fixed[i]) {
-                    self.locations[i].vertices().iter().for_each(|&v| set(v as usize));
-                }
-            });
-        });
     }
 
     /// Sets the facets without Crouzeix-Raviart functions, and the facets that conforming functions alone
     /// correct: the facets of cells with free and fixed vertex values, in which facet mean functions are not free.
     fn set_facets(&mut self) {
         let Self { penalties, space, states, fixed_facets, kept_facets, .. } = self;
-        let length = chunk_length(fixed_facets.len(), 1);
-        let of_chunk = |k: usize, are_fixed: &mut [bool]| {
-            let mut kept = Vec::new();
-            for (facet, is_fixed) in (k * length..).zip(are_fixed) {
-                let [one, other] = space.sides_of_facet[facet].map(|side| side as usize);
-                // on a facet with Dirichlet data the jump has no opposite side
-                let opposite = match states.get(other) {
-                    Some(&state) => state,
-                    None if penalties.has_jump(one) => SideState::Fixed,
-                    None => states[one],
-                };
-                let pair = [states[one], opposite];
-                *is_fixed = pair.contains(&SideState::Fixed);
-                if !*is_fixed && pair.contains(&SideState::Mixed) {
-                    kept.push(facet as u32);
-                }
-            }
-            kept
+        // on a facet with Dirichlet data the jump has no opposite side
+        let sides = |facet: usize| {
+            let [one, other] = space.sides_of_facet[facet].map(|side| side as usize);
+            let opposite = match states.get(other) {
+                Some(&state) => state,
+                None if penalties.has_jump(one) => SideState::Fixed,
+                None => states[one],
+            };
+            [states[one], opposite]
         };
-        *kept_facets = map_items(fixed_facets.chunks_mut(length).collect(), &of_chunk).concat();
+        let n = fixed_facets.len();
+        *fixed_facets = collect(n, |facet| sides(facet).contains(&SideState::Fixed));
+        let is_mixed = |facet: usize| sides(facet).contains(&SideState::Mixed);
+        *kept_facets = indices(n, |facet| !fixed_facets[facet] && is_mixed(facet));
     }
-}
-
-/// The reciprocal of a positive number; [`FactorError::NotPositive`] for any other.
-fn invert<T: Real>(x: T) -> Result<T, FactorError> {
-    if x > T::lit(0.0) { Ok(T::lit(1.0) / x) } else { Err(FactorError::NotPositive) }
 }
 
 impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {
@@ -323,11 +250,8 @@ impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {
         self.set_facets();
         self.set_fixed_vertices();
         let Self { mixed_block, fixed_facets, kept_facets, fixed_vertices, .. } = self;
-        // most of the work on the block is that of one thread
-        let at_once = mixed_block.may_run_beside();
-        let factor = || mixed_block.factor(self.matrix, &self.penalties, &self.sides.inverse_jump);
-        let set = || self.facet_means_solver.set_fixed(fixed_facets, kept_facets, fixed_vertices);
-        let (factored, set) = both(at_once, factor, set);
+        let factored = mixed_block.factor(self.matrix, &self.penalties, &self.sides.inverse_jump);
+        let set = self.facet_means_solver.set_fixed(fixed_facets, kept_facets, fixed_vertices);
         corrected.and(factored).and(set)
     }
 
@@ -359,10 +283,8 @@ impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {
             }
         });
         let Self { mixed_block, facet_means_solver, facet_residuals, facet_means, .. } = self;
-        let at_once = mixed_block.may_run_beside();
-        let solve = || mixed_block.solve(r, g);
-        let apply = || facet_means_solver.apply(facet_residuals, facet_means);
-        both(at_once, solve, apply);
+        mixed_block.solve(r, g);
+        facet_means_solver.apply(facet_residuals, facet_means);
         let (facet_of_side, facet_means) = (&self.space.facet_of_side, &self.facet_means);
         let opposite = &self.penalties.opposite;
         let means = if are_means { &mut *z } else { &mut self.means[..] };

@@ -24,9 +24,6 @@ pub(super) struct MixedBlock<'a, T> {
 
 /// The solver of a linear system with few of the unknowns.
 pub(crate) trait BlockSolver<T>: Send + Sync {
-    /// Whether all parts of a mesh must call `factor` and `solve` together; then no other work runs beside these
-    /// calls.
-    fn is_collective(&self) -> bool;
     /// Factors a symmetric matrix with a row for each of these unknowns, ascending. Over the parts of a mesh the rows of
     /// ghosts may be incomplete.
     ///
@@ -42,10 +39,6 @@ pub(crate) trait BlockSolver<T>: Send + Sync {
 pub(super) struct BlockFactors<T>(pub Option<Factors<T>>);
 
 impl<T: Real> BlockSolver<T> for BlockFactors<T> {
-    fn is_collective(&self) -> bool {
-        false
-    }
-
     fn factor(&mut self, block: &SparseMatrix<T>, unknowns: &[u32]) -> Result<(), FactorError> {
         self.0 = None;
         if !unknowns.is_empty() {
@@ -96,12 +89,6 @@ impl<T: Real> MixedBlock<'_, T> {
             couplings.push(coupling);
         }
         solver.factor(&block, vertex_values)
-    }
-
-    /// Whether other work may run beside the factorisation and the solution of the block: the calls are not collective,
-    /// and the block is not empty.
-    pub fn may_run_beside(&self) -> bool {
-        !self.solver.is_collective() && !self.vertex_values.is_empty()
     }
 
     /// Solves the block for the residual with the entries `r` for vertex values and `g` for facet mean functions.

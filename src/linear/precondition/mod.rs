@@ -1,9 +1,10 @@
 //! Symmetric positive definite preconditioners on the free unknowns.
 //!
 //! `preconditioner`: the traits. `multigrid`: conforming linear functions, and other elements with conforming linear
-//! functions as auxiliary space; it uses `block_gauss_seidel`, `prolongation`, `aggregation` and `coarse_level`. `mean_jump_splitting`, `mixed_block`, `facet_mean_form` and
-//! `crouzeix_raviart_space`: over-penalised discontinuous linear elements. `coarse_spaces`: the spaces that are known for
-//! an inequality. `built_in`: the preconditioner that fits an inequality.
+//! functions as auxiliary space; it uses `block_gauss_seidel`, `prolongation`, `aggregation` and `coarse_level`.
+//! `mean_jump_splitting`, `mixed_block`, `facet_mean_form` and `crouzeix_raviart_space`: over-penalised discontinuous
+//! linear elements. `coarse_spaces`: the spaces that are known for an inequality. `built_in`: the preconditioner that
+//! fits an inequality.
 
 mod aggregation;
 mod block_gauss_seidel;
@@ -23,7 +24,8 @@ pub use built_in::BuiltInPreconditioners;
 pub(crate) use built_in::unknowns_per_cell;
 pub use coarse_level::{CoarseLevel, P1Level};
 pub use coarse_spaces::CoarseSpaces;
-pub(crate) use mean_jump_splitting::{FacetMeansSolver, MeanJumpSplitting};
+pub(crate) use mean_jump_splitting::MeanJumpSplitting;
 pub(crate) use mixed_block::BlockSolver;
+pub(crate) use preconditioner::FacetMeansSolver;
 pub use preconditioner::{PreconditionedSystem, Preconditioner, PreconditionerFamily};
 pub use prolongation::Prolongation;

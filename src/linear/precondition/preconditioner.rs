@@ -61,3 +61,20 @@ pub trait PreconditionerFamily<T: Real>: Send + Sync {
         system: PreconditionedSystem<'a, T>,
     ) -> Option<Box<dyn Preconditioner<T> + 'a>>;
 }
+
+/// A preconditioner of the stiffness on Crouzeix-Raviart functions.
+pub(crate) trait FacetMeansSolver<T>: Send + Sync {
+    /// Sets the facets without a function, the facets with a function that conforming linear functions
+    /// alone may correct, and the vertices at which conforming linear functions vanish.
+    ///
+    /// # Errors
+    /// [`FactorError`] if a coarse matrix is not positive definite.
+    fn set_fixed(
+        &mut self,
+        fixed_facets: &[bool],
+        kept_facets: &[u32],
+        fixed_vertices: &[bool],
+    ) -> Result<(), FactorError>;
+    /// Sets `means` to the correction of the means on facets for a residual that is zero on facets without a function.
+    fn apply(&mut self, residual: &[T], means: &mut [T]);
+}

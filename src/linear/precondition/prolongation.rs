@@ -72,9 +72,7 @@ impl Prolongation {
                     }
                 }
             }
-            sort_by_column(&mut row);
-            fine.columns.extend(row.iter().map(|entry| entry.0));
-            fine.values.extend(row.iter().map(|entry| entry.1));
+            append(&mut row, &mut fine.columns, &mut fine.values);
             fine.row_starts.push(fine.columns.len() as u32);
         }
         Self::new(fine, n_coarse)
@@ -108,9 +106,7 @@ impl Prolongation {
         let rows = SparseMatrix::by_rows(0..order.len(), |new, columns, weights| {
             row.clear();
             row.extend(self.parents(order[new] as usize).map(|(j, w)| (coarse[j], w)));
-            sort_by_column(&mut row);
-            columns.extend(row.iter().map(|entry| entry.0));
-            weights.extend(row.iter().map(|entry| entry.1));
+            append(&mut row, columns, weights);
         });
         Self::new(rows, self.n_coarse())
     }
@@ -195,4 +191,11 @@ impl Prolongation {
 fn combination<S: Real>((indices, weights): (&[u32], &[f32]), values: &[S]) -> S {
     let term = |sum, (&k, &weight): (&u32, &f32)| sum + S::lit(weight.into()) * values[k as usize];
     indices.iter().zip(weights).fold(S::lit(0.0), term)
+}
+
+/// Appends the entries of a row in the order of their columns.
+fn append(row: &mut [(u32, f32)], columns: &mut Vec<u32>, weights: &mut Vec<f32>) {
+    sort_by_column(row);
+    columns.extend(row.iter().map(|entry| entry.0));
+    weights.extend(row.iter().map(|entry| entry.1));
 }

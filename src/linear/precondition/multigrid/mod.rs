@@ -22,7 +22,7 @@ mod truncation;
 use std::borrow::Cow;
 
 use super::coarse_level::{CoarseLevel, P1Level};
-use super::preconditioner::Preconditioner;
+use super::preconditioner::{FacetMeansSolver, Preconditioner};
 use super::prolongation::Prolongation;
 use crate::algebra::SparseMatrix;
 use crate::linear::direct::FactorError;
@@ -56,7 +56,7 @@ pub(crate) struct Multigrid<'a, T: Real> {
 }
 
 impl<'a, T: Real> Multigrid<'a, T> {
-    /// The cycle for a matrix with its coarser levels. [`Multigrid::set_fixed`] must be called before
+    /// The cycle for a matrix with its coarser levels. [`Preconditioner::set_fixed`] must be called before
     /// the first use.
     pub fn new(matrix: &'a SparseMatrix<T>, coarser: Option<&'a CoarseLevel<T>>) -> Self {
         let prolongation = coarser.map(|c| Cow::Borrowed(&*c.prolongation));
@@ -79,27 +79,6 @@ impl<'a, T: Real> Multigrid<'a, T> {
         Self { name: "auxiliary-space", ..all }
     }
 
-    /// Sets the fixed unknowns as [`Multigrid::set_fixed`] does, and two further sets: the unknowns `kept` of the
-    /// finest level, which are corrected by the coarser levels alone, and the unknowns of the next coarser level that
-    /// are fixed besides those with Dirichlet data, for which `fixed_on_next` is true.
-    ///
-    /// # Errors
-    /// See [`Multigrid::set_fixed`].
-    pub fn set_fixed_and_kept(
-        &mut self,
-        fixed: &[bool],
-        kept: &[u32],
-        fixed_on_next: &[bool],
-    ) -> Result<(), FactorError> {
-        self.levels[0].kept.clear();
-        self.levels[0].kept.extend_from_slice(kept);
-        if let Some(next) = self.levels.get_mut(1) {
-            next.fixed_besides.clear();
-            next.fixed_besides.extend_from_slice(fixed_on_next);
-        }
-        self.set_fixed(fixed)
-    }
-
     /// The cycle with a finest level, and the levels from `coarser` on.
     fn with_finest(finest: Level<'a, T>, coarser: Option<&'a P1Level<T>>) -> Self {
         let matrix = &finest.matrix;
@@ -116,13 +95,19 @@ impl<'a, T: Real> Multigrid<'a, T> {
         let (right_side, values) = (zeros(n), zeros(n));
         Self { levels, coarsest, scale, right_side, values, name: "multigrid" }
     }
+}
+
+impl<T: Real> Preconditioner<T> for Multigrid<'_, T> {
+    fn name(&self) -> &'static str {
+        self.name
+    }
 
     /// Sets the fixed unknowns of the finest level. On a coarser level an unknown is fixed if it has Dirichlet
-    /// data, if all its children are fixed, or if [`Multigrid::set_fixed_and_kept`] has fixed it.
+    /// data, if all its children are fixed, or if [`FacetMeansSolver::set_fixed`] has fixed it.
     ///
     /// # Errors
     /// [`FactorError`] if the matrix of the coarsest level, or the block of a cell, is not positive definite.
-    pub fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
+    fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
         self.levels[0].fixed.copy_from_slice(fixed);
         for k in 0..self.levels.len() {
             let (finer, rest) = self.levels.split_at_mut(k);
@@ -153,7 +138,7 @@ impl<'a, T: Real> Multigrid<'a, T> {
     }
 
     /// Sets `values` to the result of one cycle from zero for a right-hand side.
-    pub fn apply(&mut self, right_side: &[T], values: &mut [T]) {
+    fn apply(&mut self, right_side: &[T], values: &mut [T]) {
         // the quotient of a number that is not finite is not finite
         let largest = largest(right_side.len(), |i| right_side[i].to_f64().abs());
         let unit = if largest > 0.0 { largest } else { 1.0 };
@@ -170,17 +155,22 @@ impl<'a, T: Real> Multigrid<'a, T> {
     }
 }
 
-impl<T: Real> Preconditioner<T> for Multigrid<'_, T> {
-    fn name(&self) -> &'static str {
-        self.name
+impl<T: Real> FacetMeansSolver<T> for Multigrid<'_, T> {
+    fn set_fixed(
+        &mut self,
+        fixed_facets: &[bool],
+        kept_facets: &[u32],
+        fixed_vertices: &[bool],
+    ) -> Result<(), FactorError> {
+        self.levels[0].kept = kept_facets.to_vec();
+        if let Some(next) = self.levels.get_mut(1) {
+            next.fixed_besides = fixed_vertices.to_vec();
+        }
+        Preconditioner::set_fixed(self, fixed_facets)
     }
 
-    fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
-        Multigrid::set_fixed(self, fixed)
-    }
-
-    fn apply(&mut self, r: &[T], z: &mut [T]) {
-        Multigrid::apply(self, r, z);
+    fn apply(&mut self, residual: &[T], means: &mut [T]) {
+        Preconditioner::apply(self, residual, means);
     }
 }
 
