@@ -80,11 +80,8 @@ type Block<const N: usize> = [[f32; N]; N];
 /// The block Gauss-Seidel smoother of a matrix with blocks of `N` unknowns.
 struct BlockGaussSeidel<const N: usize> {
     chunks: Vec<ChunkRows<N>>,
-    /// The inverses of the blocks of `D + E` on free unknowns, zero in rows and columns of others and of unknowns whose
-    /// diagonal entry is zero.
-    inverses: Vec<Block<N>>,
-    /// Which unknowns of a block are fixed; `None` if the inverse is outdated, or zero because the unknown is kept.
-    fixed: Vec<Option<[bool; N]>>,
+    /// The number of blocks of a chunk; the last one may have fewer.
+    chunk_length: usize,
 }
 
 /// The rows of a chunk of blocks: the diagonal blocks, the strictly lower triangle within the chunk, and all blocks
@@ -93,6 +90,11 @@ struct ChunkRows<const N: usize> {
     diagonal: Vec<Block<N>>,
     /// The diagonal `E`; empty if it is zero.
     added: Vec<[f32; N]>,
+    /// The inverses of the blocks of `D + E` on free unknowns, zero in rows and columns of others and of unknowns whose
+    /// diagonal entry is zero.
+    inverses: Vec<Block<N>>,
+    /// Which unknowns of a block are fixed; `None` if the inverse is outdated, or zero because the unknown is kept.
+    fixed: Vec<Option<[bool; N]>>,
     /// Start of each row in `columns` and `lower`, and the number of blocks at the end.
     starts: Vec<u32>,
     /// For each row the preceding ones of the chunk that are coupled to it, relative to the chunk.
@@ -105,9 +107,9 @@ struct ChunkRows<const N: usize> {
 impl<T: Real> ScaledRows<'_, T> {
     /// The entries in the rows of a block and the columns of another.
     fn block<const N: usize>(&self, own: usize, other: usize) -> Block<N> {
-        from_fn(|k| {
+        let mut block = [[0.0; N]; N];
+        for (k, row) in block.iter_mut().enumerate() {
             let (columns, values) = (self.row)(own * N + k);
-            let mut row = [0.0; N];
             let first = columns.partition_point(|&j| (j as usize) < other * N);
             for (&j, a) in columns[first..].iter().zip(&values[first..]) {
                 match row.get_mut(j as usize - other * N) {
@@ -115,8 +117,8 @@ impl<T: Real> ScaledRows<'_, T> {
                     None => break,
                 }
             }
-            row
-        })
+        }
+        block
     }
 }
 
@@ -130,7 +132,11 @@ impl<const N: usize> ChunkRows<N> {
         for own in range.clone() {
             others.clear();
             for row in own * N..(own + 1) * N {
-                others.extend((rows.row)(row).0.iter().map(|&j| j as usize / N));
+                for other in (rows.row)(row).0.iter().map(|&j| j as usize / N) {
+                    if others.last() != Some(&other) {
+                        others.push(other);
+                    }
+                }
             }
             if N > 1 {
                 others.sort_unstable();
@@ -146,8 +152,10 @@ impl<const N: usize> ChunkRows<N> {
             starts.push(columns.len() as u32);
         }
         let zero = [[0.0; N]; N];
-        let (diagonal, lower) = (vec![zero; n], vec![zero; columns.len()]);
-        let mut chunk = Self { diagonal, added: Vec::new(), starts, columns, lower, outside };
+        let lower = vec![zero; columns.len()];
+        let (diagonal, inverses, fixed) = (vec![zero; n], vec![zero; n], vec![None; n]);
+        let added = Vec::new();
+        let mut chunk = Self { diagonal, added, inverses, fixed, starts, columns, lower, outside };
         range.clone().for_each(|own| chunk.read_row(rows, own, range.start));
         chunk.update_added();
         chunk
@@ -227,18 +235,13 @@ impl<const N: usize> BlockGaussSeidel<N> {
         let chunks = map_chunks_of_groups(n, N, |range| {
             ChunkRows::new(rows, range.start / N..range.end / N)
         });
-        Self { chunks, inverses: vec![[[0.0; N]; N]; n / N], fixed: vec![None; n / N] }
-    }
-
-    /// The number of blocks in a chunk.
-    fn chunk_length(&self) -> usize {
-        chunk_length(N * self.inverses.len(), N) / N
+        Self { chunks, chunk_length: chunk_length(n, N) / N }
     }
 }
 
 impl<T: Real, const N: usize> Smoother<T> for BlockGaussSeidel<N> {
     fn replace_rows(&mut self, changed: &[u32], rows: ScaledRows<'_, T>) {
-        let length = self.chunk_length();
+        let length = self.chunk_length;
         let mut replaced: Vec<usize> = changed.iter().map(|&i| i as usize / N).collect();
         for k in 0..replaced.len() {
             // a preceding row of another chunk stores entries of this one
@@ -246,58 +249,49 @@ impl<T: Real, const N: usize> Smoother<T> for BlockGaussSeidel<N> {
             let first = replaced[k] - own;
             let outside = of_chunk.outside[of_chunk.first_outside(own)..].iter();
             let of_row = outside.take_while(|entry| usize::from(entry.0) == own);
-            let others: Vec<usize> = of_row.map(|entry| entry.1 as usize).collect();
-            replaced.extend(others.into_iter().filter(|&i| i < first));
+            replaced.extend(of_row.map(|entry| entry.1 as usize).filter(|&i| i < first));
         }
         replaced.sort_unstable();
         replaced.dedup();
         for of_chunk in replaced.chunk_by(|one, other| one / length == other / length) {
-            let first = of_chunk[0] / length * length;
-            let chunk = &mut self.chunks[first / length];
-            let range = first..first + chunk.diagonal.len();
-            of_chunk.iter().for_each(|&own| chunk.read_row(rows, own, first));
+            let number = of_chunk[0] / length;
+            let chunk = &mut self.chunks[number];
+            of_chunk.iter().for_each(|&own| chunk.read_row(rows, own, number * length));
             chunk.update_added();
             // what is added to the diagonal may have changed in any row
-            self.fixed[range].fill(None);
+            chunk.fixed.fill(None);
         }
     }
 
     fn set_fixed(&mut self, fixed: &[bool], kept: &[u32]) -> Result<(), FactorError> {
-        let length = self.chunk_length();
-        let fixed = fixed.as_chunks::<N>().0.chunks(length);
-        let blocks = self.inverses.chunks_mut(length).zip(self.fixed.chunks_mut(length));
-        let tasks = self.chunks.iter().zip(fixed).zip(blocks).collect();
+        let length = self.chunk_length;
+        let tasks = self.chunks.iter_mut().zip(fixed.as_chunks::<N>().0.chunks(length)).collect();
         let is_positive = AtomicBool::new(true);
-        for_each_item(tasks, &|_,
-                               ((chunk, fixed), (inverses, known)): (
-            (&ChunkRows<N>, &[[bool; N]]),
-            (&mut [Block<N>], &mut [Option<[bool; N]>]),
-        )| {
-            for (k, (inverse, known)) in inverses.iter_mut().zip(known).enumerate() {
-                if *known == Some(fixed[k]) {
-                    continue;
-                }
-                match chunk.inverse(k, &fixed[k]) {
-                    Some(block) => (*inverse, *known) = (block, Some(fixed[k])),
-                    None => return is_positive.store(false, Ordering::Relaxed),
+        for_each_item(tasks, &|_, (chunk, fixed): (&mut ChunkRows<N>, &[[bool; N]])| {
+            for (k, fixed) in fixed.iter().enumerate() {
+                if chunk.fixed[k] != Some(*fixed) {
+                    match chunk.inverse(k, fixed) {
+                        Some(block) => chunk.inverses[k] = block,
+                        None => return is_positive.store(false, Ordering::Relaxed),
+                    }
+                    chunk.fixed[k] = Some(*fixed);
                 }
             }
         });
-        for &i in kept {
-            self.inverses[i as usize / N] = [[0.0; N]; N];
-            self.fixed[i as usize / N] = None;
+        for i in kept.iter().map(|&i| i as usize / N) {
+            let chunk = &mut self.chunks[i / length];
+            (chunk.inverses[i % length], chunk.fixed[i % length]) = ([[0.0; N]; N], None);
         }
         if is_positive.into_inner() { Ok(()) } else { Err(FactorError::NotPositive) }
     }
 
     fn forward(&self, b: &[f32], x: &mut [f32], r: &mut [f32]) {
-        let length = chunk_length(x.len(), N);
+        let length = N * self.chunk_length;
         sum_chunks_of_two(x, r, N, |range, x, r| {
             let chunk = &self.chunks[range.start / length];
             let (x, r) = (x.as_chunks_mut::<N>().0, r.as_chunks_mut::<N>().0);
-            let inverses = &self.inverses[range.start / N..range.end / N];
             let b = b[range].as_chunks::<N>().0;
-            for (row, (b, inverse)) in b.iter().zip(inverses).enumerate() {
+            for (row, (b, inverse)) in b.iter().zip(&chunk.inverses).enumerate() {
                 let mut sum = *b;
                 chunk.lower_row(row).for_each(|(j, a)| subtract_product(a, &x[j], &mut sum));
                 let value = product(inverse, &sum);
@@ -305,7 +299,9 @@ impl<T: Real, const N: usize> Smoother<T> for BlockGaussSeidel<N> {
                 let added = chunk.added.get(row).unwrap_or(&[0.0; N]);
                 // an unknown that is not smoothed has the value zero; residuals of fixed ones are set to zero below
                 let is_smoothed = |k: usize| inverse[k][k] != 0.0;
-                r[row] = from_fn(|k| if is_smoothed(k) { added[k] * value[k] } else { sum[k] });
+                for k in 0..N {
+                    r[row][k] = if is_smoothed(k) { added[k] * value[k] } else { sum[k] };
+                }
                 chunk.lower_row(row).for_each(|(j, a)| subtract_transposed(a, &value, &mut r[j]));
             }
             0.0
@@ -313,18 +309,21 @@ impl<T: Real, const N: usize> Smoother<T> for BlockGaussSeidel<N> {
         let x = x.as_chunks::<N>().0;
         for_each_chunk_of_groups(r, N, |range, r| {
             let r = r.as_chunks_mut::<N>().0;
-            for (row, other, a) in &self.chunks[range.start / length].outside {
+            let chunk = &self.chunks[range.start / length];
+            for (row, other, a) in &chunk.outside {
                 subtract_product(a, &x[*other as usize], &mut r[usize::from(*row)]);
             }
-            for (r, fixed) in r.iter_mut().zip(&self.fixed[range.start / N..range.end / N]) {
+            for (r, fixed) in r.iter_mut().zip(&chunk.fixed) {
                 let is_fixed = fixed.unwrap_or([false; N]);
-                *r = from_fn(|k| if is_fixed[k] { 0.0 } else { r[k] });
+                for (r, is_fixed) in r.iter_mut().zip(is_fixed) {
+                    *r = if is_fixed { 0.0 } else { *r };
+                }
             }
         });
     }
 
     fn backward(&self, b: &[f32], x: &mut [f32], r: &mut [f32]) {
-        let length = chunk_length(x.len(), N);
+        let length = N * self.chunk_length;
         let old = x.as_chunks::<N>().0;
         for_each_chunk_of_groups(r, N, |range, r| {
             r.copy_from_slice(&b[range.clone()]);
@@ -336,17 +335,19 @@ impl<T: Real, const N: usize> Smoother<T> for BlockGaussSeidel<N> {
         sum_chunks_of_two(x, r, N, |range, x, r| {
             let chunk = &self.chunks[range.start / length];
             let (x, r) = (x.as_chunks_mut::<N>().0, r.as_chunks_mut::<N>().0);
-            let inverses = &self.inverses[range.start / N..range.end / N];
-            for (row, inverse) in inverses.iter().enumerate().rev() {
+            for (row, inverse) in chunk.inverses.iter().enumerate().rev() {
                 let mut sum = r[row];
                 if let Some(added) = chunk.added.get(row) {
-                    sum = from_fn(|k| sum[k] + added[k] * x[row][k]);
+                    for k in 0..N {
+                        sum[k] += added[k] * x[row][k];
+                    }
                 }
                 chunk.lower_row(row).for_each(|(j, a)| subtract_product(a, &x[j], &mut sum));
-                let smoothed = product(inverse, &sum);
+                let mut value = product(inverse, &sum);
                 // the value of a fixed unknown is zero since the forward iteration
-                let is_smoothed = |k: usize| inverse[k][k] != 0.0;
-                let value = from_fn(|k| if is_smoothed(k) { smoothed[k] } else { x[row][k] });
+                for k in 0..N {
+                    value[k] = if inverse[k][k] == 0.0 { x[row][k] } else { value[k] };
+                }
                 x[row] = value;
                 chunk.lower_row(row).for_each(|(j, a)| subtract_transposed(a, &value, &mut r[j]));
             }
