@@ -92,7 +92,7 @@ pub fn by_steps(scheme: &dyn Scheme<1>, cells: usize, steps: usize) -> Result<Wo
     for k in 1..=steps {
         let problem = match &last {
             None => step.clone().source(move |x| psi(x) / dt),
-            Some(last) => step.clone().discrete_source(last.function.times(1.0 / dt)),
+            Some(last) => step.clone().source_in("default", last.function.times(1.0 / dt)),
         };
         let mut iteration = NestedIteration::new(&problem, &mesh);
         if let Some(last) = &last {

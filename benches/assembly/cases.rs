@@ -88,8 +88,7 @@ fn topology<const D: usize>(subdivisions: usize, run: &mut dyn FnMut(&mut Case<'
     let job = |name, work: Box<dyn FnMut() + Send>| Job { name, bytes: None, work };
     let jobs = vec![
         job("facets", Box::new(|| drop(black_box(Neighbours::new(&mesh))))),
-        job("edges", Box::new(|| drop(black_box(Edges::new(&mesh))))),
-        job("numbered edges", Box::new(|| drop(black_box(Edges::with_cell_edges(&mesh))))),
+        job("edges", Box::new(|| drop(black_box(Edges::with_cell_edges(&mesh))))),
     ];
     run(&mut Case { name: format!("{D}d/mesh"), subdivisions, cells: mesh.n_cells(), jobs });
     let coarse = unit_box::<D>(subdivisions / 2);

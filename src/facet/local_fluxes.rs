@@ -8,7 +8,7 @@ use super::{FacetForm, FacetView, FormTheory, Lifts, PenaltyParameters, Trace};
 /// Source: B. Cockburn, C.-W. Shu, SIAM J. Numer. Anal. 35 (1998), 2440-2463; without auxiliary
 /// variables D. N. Arnold, F. Brezzi, B. Cockburn, L. D. Marini, SIAM J. Numer. Anal. 39 (2002),
 /// 1749-1779.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LocalFluxes {
     /// The factor of the penalty.
     pub eta: f64,
@@ -17,6 +17,12 @@ pub struct LocalFluxes {
     pub switch: bool,
     /// The degree of the lifts.
     pub lifts: Lifts,
+}
+
+impl Default for LocalFluxes {
+    fn default() -> Self {
+        Self { eta: 1.0, switch: false, lifts: Lifts::Reduced }
+    }
 }
 
 /// The direction of the switch: across no facet of a mesh along the axes or their diagonals.

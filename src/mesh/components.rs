@@ -24,6 +24,10 @@ impl Components {
         }
         components
     }
+    /// Number of members.
+    pub fn len(&self) -> usize {
+        self.parents.len()
+    }
     /// The member that stands for the set of a member: the smallest one.
     pub fn find(&mut self, member: usize) -> usize {
         let mut at = member;

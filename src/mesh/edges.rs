@@ -7,7 +7,6 @@ use crate::parallel::map_indices;
 use crate::parallel::vectors::{collect, concat, for_each_chunk_of_groups, starts};
 
 use super::incidence::{FirstVertices, VertexToCells, vertex_ranges};
-use super::neighbour_numbers::{LANES, NeighbourNumbers, rank};
 use super::simplicial::Mesh;
 use crate::memory::in_large_pages;
 
@@ -34,16 +33,18 @@ pub struct Edges {
 }
 
 impl Edges {
-    /// The edges of a mesh, in time linear in its cells.
-    pub fn new<const D: usize>(mesh: &Mesh<D>) -> Self {
-        Self::from_cells::<D>(mesh.cells(), mesh.vertices().len(), None)
-    }
     /// The edges of a mesh, and the number of every edge of every cell, ordered in each cell by the
-    /// second local vertex of the edge.
+    /// second local vertex of the edge; in time linear in its cells.
     pub fn with_cell_edges<const D: usize>(mesh: &Mesh<D>) -> (Self, Vec<u32>) {
         let pairs = edge_vertices(D);
+        // of each edge of each cell the rank among the edges with the same lower vertex
         let ranks = collect(pairs.len() * mesh.n_cells(), |_| AtomicU32::default());
-        let edges = Self::from_cells::<D>(mesh.cells(), mesh.vertices().len(), Some(&ranks));
+        let incidence = VertexToCells::<D>::new(mesh.cells(), FirstVertices(D));
+        let ranges = vertex_ranges(mesh.vertices().len());
+        let found = |k: usize| upper_ends(&incidence, &ranges[k], &ranks);
+        let (upper, ends): (Vec<_>, Vec<_>) = map_indices(ranges.len(), &found).into_iter().unzip();
+        let ends: Vec<&[u32]> = ends.iter().map(|ends: &Vec<u32>| &ends[..]).collect();
+        let edges = Self { starts: starts(&ends), upper: concat(upper) };
         // the number of an edge is that of the first edge with its lower vertex plus its rank
         let mut numbers = in_large_pages(vec![0; ranks.len()]);
         for_each_chunk_of_groups(&mut numbers, pairs.len(), |range, numbers| {
@@ -59,20 +60,6 @@ impl Edges {
         });
         (edges, numbers)
     }
-    /// The edges. In `ranks` each edge of each cell gets its rank among the edges with the same
-    /// lower vertex.
-    fn from_cells<const D: usize>(
-        cells: &[u32],
-        n_vertices: usize,
-        ranks: Option<&[AtomicU32]>,
-    ) -> Self {
-        let incidence = VertexToCells::<D>::new(cells, FirstVertices(D));
-        let ranges = vertex_ranges(n_vertices);
-        let found = |k: usize| upper_ends(&incidence, n_vertices, &ranges[k], ranks);
-        let (upper, ends): (Vec<_>, Vec<_>) = map_indices(ranges.len(), &found).into_iter().unzip();
-        let ends: Vec<&[u32]> = ends.iter().map(|ends: &Vec<u32>| &ends[..]).collect();
-        Self { starts: starts(&ends), upper: concat(upper) }
-    }
     /// Number of edges.
     pub fn len(&self) -> usize {
         self.upper.len()
@@ -85,10 +72,6 @@ impl Edges {
     pub(super) fn first_at(&self, vertex: u32) -> u32 {
         self.starts[vertex as usize]
     }
-    /// Number of the edge between `a < b`; none where no cell joins them.
-    pub fn number(&self, a: u32, b: u32) -> Option<u32> {
-        self.upper_ends(a).binary_search(&b).ok().map(|k| self.first_at(a) + k as u32)
-    }
     /// The vertices of higher number at the other end of a vertex' edges, ascending.
     pub fn upper_ends(&self, a: u32) -> &[u32] {
         &self.upper[self.first_at(a) as usize..self.first_at(a + 1) as usize]
@@ -96,49 +79,29 @@ impl Edges {
 }
 
 /// The upper ends of the edges with a lower vertex in a range, and where those of each of these
-/// vertices end.
+/// vertices end. In `ranks` each edge of each cell gets its rank.
 fn upper_ends<const D: usize>(
     incidence: &VertexToCells<'_, D>,
-    n_vertices: usize,
     vertices: &Range<u32>,
-    ranks_of_cells: Option<&[AtomicU32]>,
+    ranks: &[AtomicU32],
 ) -> (Vec<u32>, Vec<u32>) {
-    let mut last = in_large_pages(vec![0; n_vertices]);
-    let mut numbers = NeighbourNumbers::new(&mut last);
     let (mut upper, mut ends_of_vertices) = (Vec::new(), Vec::with_capacity(vertices.len()));
-    // of each vertex the upper ends in the order of the cells, and the edges of the cells
-    let (mut ends, mut cell_edges, mut ranks) = (Vec::new(), Vec::new(), Vec::new());
+    // of each vertex the upper ends, with the edges of the cells
+    let mut ends: Vec<(u32, usize)> = Vec::new();
     for (_, cells) in incidence.stars(vertices).of_vertices(vertices.clone()) {
-        numbers.next_vertex();
         ends.clear();
-        cell_edges.clear();
         for (c, i) in cells {
-            for (j, &end) in incidence.cell(c).iter().enumerate().skip(i + 1) {
-                let number = numbers.get_or_push(end);
-                if number as usize == ends.len() {
-                    ends.push(end);
-                }
-                // edge (i, j) of a cell follows the edges of lower second vertices
-                cell_edges.push((c * edge_vertices(D).len() + j * (j - 1) / 2 + i, number));
-            }
+            // edge (i, j) of a cell follows the edges of lower second vertices
+            let edge = |j: usize| c * edge_vertices(D).len() + j * (j - 1) / 2 + i;
+            let cell = incidence.cell(c).iter().enumerate().skip(i + 1);
+            ends.extend(cell.map(|(j, &end)| (end, edge(j))));
         }
-        let n = ends.len();
-        ends.resize(n.next_multiple_of(LANES), 0);
-        if ranks.len() < ends.len() {
-            ranks.resize(ends.len(), 0);
-        }
-        rank(&mut ends, n, &mut ranks);
-        let start = upper.len();
-        upper.resize(start + n, 0);
-        for (&end, &rank) in ends[..n].iter().zip(&ranks) {
-            upper[start + rank as usize] = end;
+        ends.sort_unstable();
+        for (rank, same) in (0..).zip(ends.chunk_by(|a, b| a.0 == b.0)) {
+            upper.push(same[0].0);
+            same.iter().for_each(|&(_, edge)| ranks[edge].store(rank, Ordering::Relaxed));
         }
         ends_of_vertices.push(upper.len() as u32);
-        if let Some(ranks_of_cells) = ranks_of_cells {
-            for &(edge, number) in &cell_edges {
-                ranks_of_cells[edge].store(ranks[number as usize], Ordering::Relaxed);
-            }
-        }
     }
     (upper, ends_of_vertices)
 }

@@ -69,9 +69,6 @@ pub enum MeshErrorKind {
     Shape,
 }
 
-/// What to do with facets that lie on each other.
-pub(crate) const UNITE: &str = "let bodies that were meshed apart share their nodes (in Gmsh by BooleanFragments or Coherence before meshing)";
-
 impl MeshError {
     /// The error of this kind with this sentence.
     pub(crate) fn new(kind: MeshErrorKind, message: String) -> Self {

@@ -9,7 +9,6 @@ use crate::parallel::map_indices;
 use super::boundary::BoundaryCondition;
 use super::error::{MeshError, MeshErrorKind};
 use super::incidence::{FirstVertices, VertexToCells, vertex_ranges};
-use super::neighbour_numbers::NeighbourNumbers;
 use super::simplicial::Mesh;
 use crate::memory::in_large_pages;
 
@@ -81,12 +80,10 @@ impl Neighbours {
         let incidence = VertexToCells::<D>::new(cells, FirstVertices(2));
         let mut codes = in_large_pages(Vec::with_capacity(cells.len()));
         codes.resize_with(cells.len(), || AtomicU32::new(UNKNOWN));
+        let matched = |range: &Range<u32>| match_facets_of(&incidence, range, &codes);
         let ranges = vertex_ranges(n_vertices);
-        let matched = |k: usize| match_facets_of(&incidence, n_vertices, &ranges[k], &codes);
-        if map_indices(ranges.len(), &matched).contains(&false)
-            && let Some(error) = mismatch::<D>(cells)
-        {
-            return Err(error);
+        for outcome in map_indices(ranges.len(), &|k| matched(&ranges[k])) {
+            outcome?;
         }
         // the codes of a facet are written by one task only, that of the lowest vertex of the facet
         let codes = codes.into_iter().map(AtomicU32::into_inner).collect();
@@ -123,96 +120,68 @@ impl Neighbours {
     }
 }
 
-/// The first half-facet of a facet, in a list of those with one lowest vertex.
-struct FirstHalf {
-    /// The highest vertex of the facet.
-    highest: u32,
-    /// The entry before this one with the same second vertex: facets with the same two lowest
-    /// vertices form a linked list.
-    before: Option<u32>,
-    code: u32,
-    /// Whether the second half-facet is found.
-    matched: bool,
-}
-
-/// Matches the facets whose lowest vertex is in a range; false where a facet belongs to three cells or
-/// a cell is repeated.
+/// Matches the facets whose lowest vertex is in a range.
+///
+/// # Errors
+/// That of the first facet, in lexicographic order, which belongs to three cells or to two with the same vertices.
 fn match_facets_of<const D: usize>(
     incidence: &VertexToCells<'_, D>,
-    n_vertices: usize,
     vertices: &Range<u32>,
     codes: &[AtomicU32],
-) -> bool {
-    let mut last = in_large_pages(vec![0; n_vertices]);
-    let mut numbers = NeighbourNumbers::new(&mut last);
-    let mut halves: Vec<FirstHalf> = Vec::new();
+) -> Result<(), MeshError> {
+    let index = |code: u32| (code >> 2) as usize * (D + 1) + (code & 3) as usize;
+    // of each vertex the half-facets with it as the lowest one, by their other vertices
+    let mut halves: Vec<([u32; 2], u32)> = Vec::new();
     for (lowest, cells) in incidence.stars(vertices).of_vertices(vertices.clone()) {
-        numbers.next_vertex();
         halves.clear();
         for (c, first) in cells {
+            let cell = incidence.cell(c);
             // the first vertex of a cell is the lowest of all facets but the one opposite it
             for local in if first == 0 { 1..D + 1 } else { 0..1 } {
-                let cell = incidence.cell(c);
-                let vertex = |k: usize| cell[k + usize::from(k >= local)];
-                // in one dimension a facet has one vertex, which stands for the second
-                let second = if D > 1 { vertex(1) } else { lowest };
-                let highest = if D > 2 { vertex(2) } else { second };
-                let code = half_facet_code(c, local);
-                let before = numbers.get(second);
-                let mut found = before;
-                while let Some(k) = found
-                    && halves[k as usize].highest != highest
-                {
-                    found = halves[k as usize].before;
-                }
-                let Some(other) = found.map(|k| &mut halves[k as usize]) else {
-                    numbers.push(second);
-                    halves.push(FirstHalf { highest, before, code, matched: false });
-                    continue;
-                };
-                let opposite =
-                    incidence.cell((other.code >> 2) as usize)[(other.code & 3) as usize];
-                if std::mem::replace(&mut other.matched, true) || opposite == cell[local] {
-                    return false;
-                }
-                let index = |code: u32| (code >> 2) as usize * (D + 1) + (code & 3) as usize;
-                codes[index(code)].store(other.code, Ordering::Relaxed);
-                codes[index(other.code)].store(code, Ordering::Relaxed);
+                let vertex = |k: usize| if k < D { cell[k + usize::from(k >= local)] } else { 0 };
+                halves.push(([vertex(1), vertex(2)], half_facet_code(c, local)));
             }
         }
+        halves.sort_unstable();
+        for same in halves.chunk_by(|a, b| a.0 == b.0) {
+            let &[(others, here), (_, there), ..] = same else { continue };
+            let cell = |code: u32| incidence.cell((code >> 2) as usize);
+            if same.len() > 2 || cell(here) == cell(there) {
+                let facet = [lowest, others[0], others[1]];
+                let cells = same.iter().map(|(_, code)| (*code >> 2) as usize);
+                return Err(mismatch(&facet[..D], &cells.collect::<Vec<_>>(), |c| {
+                    incidence.cell(c)
+                }));
+            }
+            codes[index(here)].store(there, Ordering::Relaxed);
+            codes[index(there)].store(here, Ordering::Relaxed);
+        }
     }
-    true
+    Ok(())
 }
 
-/// The error of the first facet, in lexicographic order, that belongs to three cells or to two cells
-/// with the same vertices.
-fn mismatch<const D: usize>(cells: &[u32]) -> Option<MeshError> {
-    let cell = |c: usize| &cells[c * (D + 1)..(c + 1) * (D + 1)];
-    let vertices = |(c, local): HalfFacet| facet_of::<D>(cell(c), local);
-    let mut half_facets: Vec<_> = (0..cells.len()).map(|k| (k / (D + 1), k % (D + 1))).collect();
-    half_facets.sort_unstable_by_key(|&half_facet| (vertices(half_facet), half_facet));
-    for same in half_facets.chunk_by(|&a, &b| vertices(a) == vertices(b)) {
-        for k in 1..same.len() {
-            let second = same[k].0;
-            if let Some(&(first, _)) = same[..k].iter().find(|(c, _)| cell(*c) == cell(second)) {
-                let vertices = cell(first);
-                let message =
-                    format!("cells {first} and {second} have the same vertices {vertices:?}");
-                let error = MeshError::new(MeshErrorKind::RepeatedCell, message);
-                return Some(error.of_cells([first, second]).of_vertices(vertices));
-            }
-            if k == 2 {
-                let vertices = vertices(same[0]);
-                let cells = [same[0].0, same[1].0, second];
-                let message = format!(
-                    "facet {vertices:?} belongs to cells {cells:?}: a facet lies between two cells at most"
-                );
-                let error = MeshError::new(MeshErrorKind::FacetOfThreeCells, message);
-                return Some(error.of_cells(cells).of_vertices(&vertices));
-            }
+/// The error of a facet that belongs to three cells or to two with the same vertices.
+#[cold]
+fn mismatch<'c>(
+    facet: &[u32],
+    cells: &[usize],
+    vertices: impl Fn(usize) -> &'c [u32],
+) -> MeshError {
+    for (k, &second) in cells.iter().enumerate().take(3) {
+        let twin = cells[..k].iter().find(|&&first| vertices(first) == vertices(second));
+        if let Some(&first) = twin {
+            let vertices = vertices(first);
+            let message = format!("cells {first} and {second} have the same vertices {vertices:?}");
+            let error = MeshError::new(MeshErrorKind::RepeatedCell, message);
+            return error.of_cells([first, second]).of_vertices(vertices);
         }
     }
-    None
+    let cells = &cells[..3];
+    let message = format!(
+        "facet {facet:?} belongs to cells {cells:?}: a facet lies between two cells at most"
+    );
+    let error = MeshError::new(MeshErrorKind::FacetOfThreeCells, message);
+    error.of_cells(cells).of_vertices(facet)
 }
 
 /// All facets, each once, in five ranges: interior, Dirichlet, Neumann, contact, and where the mesh is cut.

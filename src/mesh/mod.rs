@@ -49,8 +49,6 @@ pub use geometry::CellGeometry;
 pub(crate) use geometry::describe_point;
 pub(crate) use geometry::simplex::{FACTORIAL, cofactors, cross, dot, with_zeros};
 pub use groups::BoundaryGroup;
-#[cfg(feature = "problem-files")]
-pub(crate) use overlap::FacetSearch;
 pub use part::{Across, Extent, Layers, Part};
 pub use refine::Refinement;
 #[cfg(feature = "problem-files")]

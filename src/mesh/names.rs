@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::boundary::BoundaryCondition;
+use super::components::Components;
 use super::error::MeshError;
 use super::facets::Neighbours;
 use super::groups::BoundaryGroup;
@@ -89,7 +90,8 @@ impl<const D: usize> Mesh<D> {
                 facet.condition = condition;
             }
         }
-        self.is_supported = is_supported(&Neighbours::new(&self), &self.boundary);
+        let mut components = Components::of_cells(&Neighbours::new(&self));
+        self.is_supported = is_supported(&mut components, &self.boundary);
         Ok(self)
     }
 

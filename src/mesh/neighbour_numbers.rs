@@ -29,18 +29,6 @@ impl<'n> NeighbourNumbers<'n> {
     pub fn count(&self) -> usize {
         self.n as usize
     }
-    /// The number last given to this neighbour.
-    #[inline(always)]
-    pub fn get(&self, neighbour: u32) -> Option<u32> {
-        let last = self.last[neighbour as usize];
-        (last > self.base).then(|| last - self.base - 1)
-    }
-    /// Gives the next number to this neighbour.
-    #[inline(always)]
-    pub fn push(&mut self, neighbour: u32) {
-        self.n += 1;
-        self.last[neighbour as usize] = self.base + self.n;
-    }
     /// The number of this neighbour, the next one if it has none; without a branch.
     #[inline(always)]
     pub fn get_or_push(&mut self, neighbour: u32) -> u32 {

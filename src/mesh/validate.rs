@@ -4,12 +4,11 @@ use std::sync::Arc;
 
 use super::boundary::{BoundaryCondition, BoundaryFacet};
 use super::components::Components;
-use super::error::{MeshError, MeshErrorKind, UNITE};
-use super::facets::{CELL_LIMIT, Neighbours, facet_of};
-use super::geometry::simplex::longest_edge;
-use super::geometry::{CellGeometry, describe_point};
+use super::error::{MeshError, MeshErrorKind};
+use super::facets::{CELL_LIMIT, HalfFacet, Neighbours, facet_of};
+use super::geometry::describe_point;
 use super::groups::{BoundaryGroup, Groups, NameSets};
-use super::overlap::{check_folds, check_overlaps, lie_on_others};
+use super::overlap::UNITE;
 use super::shapes::shape::Shapes;
 use super::simplicial::Mesh;
 use crate::input::excerpt;
@@ -43,9 +42,8 @@ impl<const D: usize> Mesh<D> {
     /// their order.
     ///
     /// # Errors
-    /// [`MeshError`]. Vertices in errors are numbered as given. Folds across a facet are always found, other
-    /// overlaps where one of the lines through boundary facets meets them: through all up to 64, through eight
-    /// from 512 facets on.
+    /// [`MeshError`]. Vertices in errors are numbered as given. Folds across a facet are always found, overlaps of
+    /// bodies where the middle of a facet of the boundary, or of its cell, lies in a cell of another body.
     pub fn new(
         vertices: Vec<Point<D>>,
         cells: Vec<u32>,
@@ -91,31 +89,187 @@ impl<const D: usize> Mesh<D> {
         names: &[String],
     ) -> Result<Self, MeshError> {
         check_lists(&vertices, &cells)?;
-        for cell in cells.chunks_exact_mut(D + 1) {
-            cell.sort_unstable();
+        cells.chunks_exact_mut(D + 1).for_each(<[u32]>::sort_unstable);
+        let mut mesh = Self::without_boundary(vertices, cells);
+        let is_positive = mesh.check_volumes()?;
+        let neighbours = Neighbours::match_facets::<D>(&mesh.cells, mesh.vertices.len())?;
+        mesh.check_folds(&neighbours, &is_positive)?;
+        let open: Vec<HalfFacet> =
+            mesh.half_facets().filter(|&(c, local)| neighbours.is_unmatched(c, local)).collect();
+        let mut components = Components::of_cells(&neighbours);
+        let coincident = mesh.lie_on_others(&open, &mut components)?;
+        let (boundary, groups) = mesh.match_boundary(&open, &coincident, (boundary, names))?;
+        mesh.is_supported = is_supported(&mut components, &boundary);
+        (mesh.boundary, mesh.groups) = (boundary, Arc::new(groups));
+        mesh.drop_unused();
+        Ok(mesh)
+    }
+
+    /// A mesh of cells with ascending vertices, one region, and no facets of the boundary.
+    pub(super) fn without_boundary(vertices: Vec<Point<D>>, cells: Vec<u32>) -> Self {
+        Self {
+            vertices,
+            cells,
+            boundary: Vec::new(),
+            is_supported: false,
+            groups: Arc::default(),
+            cell_regions: Vec::new(),
+            whole: None,
+            shapes: Shapes::default(),
         }
-        let is_positive = check_volumes::<D>(&vertices, &cells)?;
-        let neighbours = Neighbours::match_facets::<D>(&cells, vertices.len())?;
-        check_folds::<D>(&cells, &neighbours, &is_positive)?;
-        let (boundary, groups) = match_boundary(&vertices, &cells, &neighbours, (boundary, names))?;
-        check_overlaps(&vertices, &cells, &boundary)?;
-        let is_supported = is_supported(&neighbours, &boundary);
-        let (vertices, cells) = drop_unused(vertices, cells);
-        let groups = Arc::new(groups);
-        let cell_regions = Vec::new();
-        let (whole, shapes) = (None, Shapes::default());
-        Ok(Self { vertices, cells, boundary, is_supported, groups, cell_regions, whole, shapes })
+    }
+
+    fn half_facets(&self) -> impl Iterator<Item = HalfFacet> + use<D> {
+        (0..self.cells.len()).map(|k| (k / (D + 1), k % (D + 1)))
+    }
+
+    /// Refuses cells whose volume is at the rounding level of its diameter: their gradients are lost.
+    /// Returns whether the determinant of the edges of each cell is positive.
+    fn check_volumes(&self) -> Result<Vec<bool>, MeshError> {
+        let check = |c: usize| {
+            let geometry = self.geometry(c);
+            let (volume, diameter) = (geometry.volume, self.cell_diameter(c));
+            let scaled = volume / diameter.powi(D as i32);
+            // overflow and underflow count as degenerate
+            if scaled.is_nan() || scaled <= 8.0 * f64::EPSILON {
+                let cell = self.cell(c);
+                let message = format!(
+                    "cell {c} is degenerate: volume {volume:e} against diameter {diameter:e} (vertices {cell:?})"
+                );
+                let error = MeshError::new(MeshErrorKind::DegenerateCell, message);
+                return Err(error.of_cells([c]).of_vertices(cell));
+            }
+            Ok(geometry.is_positive())
+        };
+        let groups = cells::map(self.n_cells(), &|range| {
+            range.map(check).collect::<Result<Vec<bool>, MeshError>>()
+        });
+        Ok(groups.into_iter().collect::<Result<Vec<_>, _>>()?.concat())
+    }
+
+    /// Gives every facet of the boundary its group and condition.
+    fn match_boundary(
+        &self,
+        open: &[HalfFacet],
+        coincident: &[usize],
+        (grouped, names): (&[GroupedFacet<D>], &[String]),
+    ) -> Result<(Vec<BoundaryFacet>, Groups), MeshError> {
+        let vertices = |(c, local): HalfFacet| facet_of::<D>(self.cell(c), local);
+        let by_vertices = |facets: &mut dyn Iterator<Item = HalfFacet>| {
+            let mut all: Vec<_> = facets.enumerate().map(|(k, f)| (vertices(f), k)).collect();
+            all.sort_unstable();
+            all
+        };
+        let find = |all: &[([u32; D], usize)], facet: &[u32; D]| {
+            all.binary_search_by(|(vertices, _)| vertices.cmp(facet)).ok().map(|k| all[k].1)
+        };
+        let sorted = by_vertices(&mut open.iter().copied());
+        let mut all: Option<Vec<_>> = None;
+        let mut sets = NameSets::new(names);
+        let mut set_of: Vec<Option<usize>> = vec![None; open.len()];
+        let mut has_inner = vec![false; names.len()];
+        for (tag, t) in grouped.iter().enumerate() {
+            let group = usize::from(t.group);
+            let Some(name) = names.get(group) else {
+                let allowed = format!("less than {}, the number of names", names.len());
+                return Err(MeshError::parameter("group of a facet", group, allowed));
+            };
+            let mut key = t.vertices;
+            key.sort_unstable();
+            let refused = |kind: MeshErrorKind, why: String| {
+                let error = MeshError::new(kind, format!("facet {key:?} is in {why}"));
+                Err(error.of_vertices(&key).of_tagged_facet(tag))
+            };
+            let Some(k) = find(&sorted, &key) else {
+                let all = all.get_or_insert_with(|| by_vertices(&mut self.half_facets()));
+                let is_inside = find(all, &key).is_some();
+                if is_inside && BoundaryCondition::from_name(name).is_none() {
+                    has_inner[group] = true;
+                    continue;
+                }
+                let why = if is_inside { "lies between two cells" } else { "belongs to no cell" };
+                let why = format!("group {} but {why}", excerpt(name));
+                return refused(MeshErrorKind::NotABoundaryFacet, why);
+            };
+            let Some(first) = set_of[k] else {
+                set_of[k] = Some(group);
+                continue;
+            };
+            let conditions = (condition_of(sets.names(first)), BoundaryCondition::from_name(name));
+            if let (Some(one), Some(two)) = conditions
+                && one != two
+            {
+                let (one, two) = (one.name(), two.name());
+                let why =
+                    format!("two groups, {one} and {two}, with different boundary conditions");
+                return refused(MeshErrorKind::FacetWithTwoConditions, why);
+            }
+            set_of[k] = Some(sets.union(first, group));
+        }
+        let mut boundary = Vec::with_capacity(open.len());
+        // sets without a facet are left out
+        let mut sets_used: Vec<Option<u16>> = Vec::new();
+        let mut groups: Vec<BoundaryGroup> = Vec::new();
+        for (key, k) in sorted {
+            let (cell, local) = open[k];
+            let Some(set) = set_of[k] else {
+                let message = format!(
+                    "boundary facet {key:?} of cell {cell}, at {}, is in no group: {}",
+                    describe_point(&self.facet_barycentre(cell, local)),
+                    remedy(coincident.contains(&k).then_some(coincident.len()))
+                );
+                let error = MeshError::new(MeshErrorKind::UntaggedFacet, message);
+                return Err(error.of_cells([cell]).of_vertices(&key));
+            };
+            sets_used.resize(sets_used.len().max(set + 1), None);
+            let group = *sets_used[set].get_or_insert_with(|| {
+                let names = sets.names(set).to_vec();
+                groups.push(BoundaryGroup { condition: condition_of(&names), names });
+                (groups.len() - 1) as u16
+            });
+            let condition =
+                groups[usize::from(group)].condition.unwrap_or(BoundaryCondition::Neumann);
+            boundary.push(BoundaryFacet {
+                cell: cell as u32,
+                local: local as u8,
+                condition,
+                group,
+            });
+        }
+        if groups.len() > usize::from(u16::MAX) {
+            let limit = usize::from(u16::MAX);
+            return Err(MeshError::too_large("boundary groups", groups.len(), limit));
+        }
+        BoundaryFacet::sort(&mut boundary);
+        let inside = names.iter().zip(has_inner).filter(|(_, has)| *has);
+        let inside = inside.map(|(name, _)| name.clone()).collect();
+        Ok((boundary, Groups { regions: vec![Vec::new()], boundary: groups, inside }))
+    }
+
+    /// Drops vertices that no cell has. The others keep their order, and so the vertices of a cell ascend.
+    fn drop_unused(&mut self) {
+        let mut number = vec![0_u32; self.vertices.len()];
+        self.cells.iter().for_each(|&v| number[v as usize] = 1);
+        let mut used = 0;
+        for v in 0..self.vertices.len() {
+            if number[v] == 1 {
+                self.vertices[used as usize] = self.vertices[v];
+                number[v] = used;
+                used += 1;
+            }
+        }
+        self.vertices.truncate(used as usize);
+        self.cells.iter_mut().for_each(|v| *v = number[*v as usize]);
     }
 }
 
 /// Whether every component of a mesh, connected through facets, has a Dirichlet facet.
-pub(super) fn is_supported(neighbours: &Neighbours, boundary: &[BoundaryFacet]) -> bool {
-    let mut components = Components::of_cells(neighbours);
-    let mut has_dirichlet = vec![false; neighbours.n_cells()];
+pub(super) fn is_supported(components: &mut Components, boundary: &[BoundaryFacet]) -> bool {
+    let mut has_dirichlet = vec![false; components.len()];
     for facet in boundary.iter().filter(|facet| facet.condition == BoundaryCondition::Dirichlet) {
         has_dirichlet[components.find(facet.cell as usize)] = true;
     }
-    (0..neighbours.n_cells()).all(|cell| has_dirichlet[components.find(cell)])
+    (0..components.len()).all(|cell| has_dirichlet[components.find(cell)])
 }
 
 fn check_lists<const D: usize>(vertices: &[Point<D>], cells: &[u32]) -> Result<(), MeshError> {
@@ -160,186 +314,17 @@ pub(super) fn check_size(cells: usize, vertices: usize) -> Result<(), MeshError>
     Ok(())
 }
 
-/// Refuses cells whose volume is at the rounding level of its diameter: their gradients are lost.
-/// Returns whether the determinant of the edges of each cell is positive.
-fn check_volumes<const D: usize>(
-    vertices: &[Point<D>],
-    cells: &[u32],
-) -> Result<Vec<bool>, MeshError> {
-    let check = |c: usize| {
-        let cell = &cells[c * (D + 1)..][..D + 1];
-        let corner = |k: usize| vertices[cell[k] as usize];
-        let geometry = CellGeometry::new(corner);
-        let volume = geometry.volume;
-        let diameter = longest_edge(corner, None);
-        let scaled = volume / diameter.powi(D as i32);
-        // overflow and underflow count as degenerate
-        if scaled.is_nan() || scaled <= 8.0 * f64::EPSILON {
-            let message = format!(
-                "cell {c} is degenerate: volume {volume:e} against diameter {diameter:e} (vertices {cell:?})"
-            );
-            let error = MeshError::new(MeshErrorKind::DegenerateCell, message);
-            return Err(error.of_cells([c]).of_vertices(cell));
-        }
-        Ok(geometry.is_positive())
-    };
-    let groups = cells::map(cells.len() / (D + 1), &|range| {
-        range.map(check).collect::<Result<Vec<bool>, MeshError>>()
-    });
-    let mut is_positive = Vec::with_capacity(cells.len() / (D + 1));
-    for group in groups {
-        is_positive.extend(group?);
-    }
-    Ok(is_positive)
-}
-
-/// A boundary facet by its ascending vertices, its cell and its number in the cell.
-type OpenFacet<const D: usize> = ([u32; D], usize, usize);
-
 /// The condition that one of the names of a group stands for.
 fn condition_of(names: &[String]) -> Option<BoundaryCondition> {
     names.iter().find_map(|name| BoundaryCondition::from_name(name))
 }
 
-/// Gives every facet of the boundary its group and condition.
-fn match_boundary<const D: usize>(
-    vertices: &[Point<D>],
-    cells: &[u32],
-    neighbours: &Neighbours,
-    (grouped, names): (&[GroupedFacet<D>], &[String]),
-) -> Result<(Vec<BoundaryFacet>, Groups), MeshError> {
-    let facet = |c: usize, local: usize| facet_of::<D>(&cells[c * (D + 1)..][..D + 1], local);
-    let half_facets = || (0..cells.len()).map(|k| (k / (D + 1), k % (D + 1)));
-    let mut open: Vec<OpenFacet<D>> = half_facets()
-        .filter(|&(c, local)| neighbours.is_unmatched(c, local))
-        .map(|(c, local)| (facet(c, local), c, local))
-        .collect();
-    open.sort_unstable();
-    let mut sets = NameSets::new(names);
-    let mut set_of: Vec<Option<usize>> = vec![None; open.len()];
-    let mut inside: Option<Vec<[u32; D]>> = None;
-    let mut has_inner = vec![false; names.len()];
-    for (tag, t) in grouped.iter().enumerate() {
-        let group = usize::from(t.group);
-        let Some(name) = names.get(group) else {
-            let allowed = format!("less than {}, the number of names", names.len());
-            return Err(MeshError::parameter("group of a facet", group, allowed));
-        };
-        let mut key = t.vertices;
-        key.sort_unstable();
-        let Ok(k) = open.binary_search_by(|o| o.0.cmp(&key)) else {
-            let inside = inside.get_or_insert_with(|| {
-                let mut all: Vec<_> = half_facets().map(|(c, local)| facet(c, local)).collect();
-                all.sort_unstable();
-                all
-            });
-            let is_inside = inside.binary_search(&key).is_ok();
-            if is_inside && BoundaryCondition::from_name(name).is_none() {
-                has_inner[group] = true;
-                continue;
-            }
-            let why = if is_inside { "lies between two cells" } else { "belongs to no cell" };
-            let message = format!("facet {key:?} is in group {} but {why}", excerpt(name));
-            let error = MeshError::new(MeshErrorKind::NotABoundaryFacet, message);
-            return Err(error.of_vertices(&key).of_tagged_facet(tag));
-        };
-        let Some(first) = set_of[k] else {
-            set_of[k] = Some(group);
-            continue;
-        };
-        if let (Some(one), Some(two)) =
-            (condition_of(sets.names(first)), BoundaryCondition::from_name(name))
-            && one != two
-        {
-            let message = format!(
-                "facet {key:?} is in two groups, {} and {}, with different boundary conditions",
-                one.name(),
-                two.name()
-            );
-            let error = MeshError::new(MeshErrorKind::FacetWithTwoConditions, message);
-            return Err(error.of_vertices(&key).of_tagged_facet(tag));
-        }
-        set_of[k] = Some(sets.union(first, group));
-    }
-    let mut boundary = Vec::with_capacity(open.len());
-    // sets without a facet are left out
-    let mut sets_used: Vec<Option<u16>> = Vec::new();
-    let mut groups = Vec::new();
-    for (&(key, cell, local), set) in open.iter().zip(set_of) {
-        let Some(set) = set else {
-            let sum = key.iter().fold(Point::<D>::zeros(), |s, &v| s + vertices[v as usize]);
-            let message = format!(
-                "boundary facet {key:?} of cell {cell}, at {}, is in no group: {}",
-                describe_point(&(sum / D as f64)),
-                remedy(coincident(vertices, &open, key))
-            );
-            let error = MeshError::new(MeshErrorKind::UntaggedFacet, message);
-            return Err(error.of_cells([cell]).of_vertices(&key));
-        };
-        sets_used.resize(sets_used.len().max(set + 1), None);
-        let group = *sets_used[set].get_or_insert_with(|| {
-            let names = sets.names(set).to_vec();
-            groups.push(BoundaryGroup { condition: condition_of(&names), names });
-            (groups.len() - 1) as u16
-        });
-        let condition = groups[usize::from(group)].condition.unwrap_or(BoundaryCondition::Neumann);
-        boundary.push(BoundaryFacet { cell: cell as u32, local: local as u8, condition, group });
-    }
-    if groups.len() > usize::from(u16::MAX) {
-        let limit = usize::from(u16::MAX);
-        return Err(MeshError::too_large("boundary groups", groups.len(), limit));
-    }
-    BoundaryFacet::sort(&mut boundary);
-    let inside = names.iter().zip(has_inner).filter(|(_, has)| *has).map(|(name, _)| name.clone());
-    let inside = inside.collect();
-    Ok((boundary, Groups { regions: vec![Vec::new()], boundary: groups, inside }))
-}
-
-/// What to do with a boundary facet in no group, given how many facets of the boundary lie on others; zero if it does
-/// not.
-fn remedy(coincident: usize) -> String {
+/// What to do with a boundary facet in no group; where it lies on another one, given how many facets do.
+fn remedy(coincident: Option<usize>) -> String {
     match coincident {
-        0 => "put it in one; the names dirichlet, neumann, contact say what holds there, for other names a problem does".to_owned(),
-        n => format!(
+        None => "put it in one; the names dirichlet, neumann, contact say what holds there, for other names a problem does".to_owned(),
+        Some(n) => format!(
             "it lies on another one, with nodes of its own, as {n} facets do; {UNITE}, or put both sides of a slit in groups"
         ),
     }
-}
-
-/// How many facets of the boundary lie on others, if this one does.
-fn coincident<const D: usize>(
-    vertices: &[Point<D>],
-    open: &[OpenFacet<D>],
-    facet: [u32; D],
-) -> usize {
-    let facets: Vec<[u32; D]> = open.iter().map(|(vertices, ..)| *vertices).collect();
-    let lie_on_others = lie_on_others(vertices, &facets);
-    match facets.iter().zip(&lie_on_others).any(|(other, lies)| *other == facet && *lies) {
-        true => lie_on_others.iter().filter(|lies| **lies).count(),
-        false => 0,
-    }
-}
-
-fn drop_unused<const D: usize>(
-    mut vertices: Vec<Point<D>>,
-    mut cells: Vec<u32>,
-) -> (Vec<Point<D>>, Vec<u32>) {
-    let mut number = vec![0_u32; vertices.len()];
-    for &v in &cells {
-        number[v as usize] = 1;
-    }
-    let mut used = 0;
-    for v in 0..vertices.len() {
-        if number[v] == 1 {
-            vertices[used as usize] = vertices[v];
-            number[v] = used;
-            used += 1;
-        }
-    }
-    vertices.truncate(used as usize);
-    // renumbering keeps the order, so the vertices of a cell stay ascending
-    for v in &mut cells {
-        *v = number[*v as usize];
-    }
-    (vertices, cells)
 }

@@ -40,7 +40,7 @@ struct Cells<const D: usize> {
 /// let u = solve(&Problem::new().constant_source(1.0), &mesh, &Sipg::default())?.function();
 /// // an implicit step of length 0.1
 /// if let Some(u) = u {
-///     let step = Problem::new().reaction(10.0).discrete_source(u.times(10.0));
+///     let step = Problem::new().reaction(10.0).source_in("default", u.times(10.0));
 ///     let next = solve(&step, &mesh, &Sipg::default())?;
 ///     assert!(next.value_at(&Point::repeat(0.5)) < u.value_at(&Point::repeat(0.5)));
 /// }

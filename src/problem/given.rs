@@ -1,6 +1,11 @@
 //! A datum as a problem has it: without a name, and by the names of regions or boundary groups.
 
+use std::fmt::Debug;
+
 use super::Datum;
+
+/// The name of all regions, and of all boundary groups: a datum for it is the one without a name.
+pub(super) const ALL: &str = "default";
 
 /// A datum without a name, and data for named regions of cells or named groups of boundary facets.
 ///
@@ -35,30 +40,46 @@ impl<F> Given<F> {
     pub(super) fn of(&self, names: &[String]) -> Option<&F> {
         self.position(names).map(|k| &self.named[k].1).or(self.everywhere.as_ref())
     }
-    /// Gives a datum to a named group, or without a name.
-    pub(crate) fn give(&mut self, name: Option<&str>, datum: F) {
+    /// Gives a datum to a named group, or without a name where the name is `default`.
+    pub(crate) fn give(&mut self, name: &str, datum: F) {
         match name {
-            Some(name) => self.named.push((name.to_owned(), datum)),
-            None => self.is_replaced |= self.everywhere.replace(datum).is_some(),
+            ALL => self.is_replaced |= self.everywhere.replace(datum).is_some(),
+            _ => self.named.push((name.to_owned(), datum)),
         }
     }
-    /// The name for which there are two data, none for those without a name; nothing where there is one of each.
-    pub(super) fn given_twice(&self) -> Option<Option<&str>> {
+}
+
+/// A datum of any kind with its names.
+pub(super) trait AnyGiven {
+    /// The names that have data.
+    fn names(&self) -> Vec<&str>;
+    /// The datum without a name.
+    fn everywhere(&self) -> Option<&dyn Debug>;
+    /// The name for which there are two data; `default` for those without a name.
+    fn given_twice(&self) -> Option<&str>;
+}
+
+impl<F: Debug> AnyGiven for Given<F> {
+    fn names(&self) -> Vec<&str> {
+        self.names().collect()
+    }
+    fn everywhere(&self) -> Option<&dyn Debug> {
+        self.everywhere.as_ref().map(|datum| datum as _)
+    }
+    fn given_twice(&self) -> Option<&str> {
         let is_second =
             |k: &usize| self.named[..*k].iter().any(|(name, _)| *name == self.named[*k].0);
-        let second = (0..self.named.len()).find(is_second).map(|k| Some(&self.named[k].0[..]));
-        second.or(self.is_replaced.then_some(None))
+        let second = (0..self.named.len()).find(is_second).map(|k| &self.named[k].0[..]);
+        second.or(self.is_replaced.then_some(ALL))
     }
 }
 
 impl<const D: usize> Given<Datum<D>> {
     /// Adds a datum to that of a named group, or to that without a name.
-    pub(super) fn add(&mut self, name: Option<&str>, datum: impl Into<Datum<D>>) {
+    pub(super) fn add(&mut self, name: &str, datum: impl Into<Datum<D>>) {
         let known = match name {
-            Some(name) => {
-                self.named.iter_mut().find(|known| known.0 == name).map(|known| &mut known.1)
-            }
-            None => self.everywhere.as_mut(),
+            ALL => self.everywhere.as_mut(),
+            _ => self.named.iter_mut().find(|known| known.0 == name).map(|known| &mut known.1),
         };
         match known {
             Some(known) => *known = known.plus(datum.into()),

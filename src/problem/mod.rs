@@ -27,6 +27,7 @@ mod named;
 mod on_mesh;
 mod robin;
 mod tensor;
+mod unknown_name;
 mod values;
 
 pub(crate) use body_constants::BodyConstants;
@@ -40,6 +41,8 @@ pub use given::Given;
 pub(crate) use on_mesh::{ByGroup, DataByGroup, DataOnMesh};
 pub use robin::Robin;
 pub use tensor::Tensor;
+#[cfg(feature = "problem-files")]
+pub(crate) use unknown_name::unknown_name;
 pub(crate) use values::ROUNDING;
 pub use values::ValueOf;
 
@@ -49,6 +52,7 @@ use std::sync::Arc;
 
 use crate::constraint::{ConstraintSet, Nodes};
 use crate::real::Point;
+use given::ALL;
 
 /// A variational inequality: data, the constraint set and, where known, its solution. A clone shares
 /// the functions.
@@ -98,30 +102,12 @@ pub struct Problem<const D: usize> {
 impl<const D: usize> fmt::Debug for Problem<D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut out = f.debug_struct("Problem");
-        for (name, given) in [
-            ("source", &self.source),
-            ("reaction", &self.reaction),
-            ("dirichlet", &self.dirichlet),
-            ("coefficient", &self.coefficient),
-            ("lower", &self.lower),
-            ("upper", &self.upper),
-            ("gap", &self.gap),
-            ("friction", &self.friction),
-        ] {
-            if let Some(datum) = &given.everywhere {
+        for (name, _, given) in self.data() {
+            if let Some(datum) = given.everywhere() {
                 out.field(name, datum);
             }
         }
-        if let Some(flux) = &self.neumann.everywhere {
-            out.field("neumann", flux);
-        }
-        if let Some(tensor) = &self.tensor.everywhere {
-            out.field("tensor", tensor);
-        }
-        if let Some(robin) = &self.robin.everywhere {
-            out.field("robin", robin);
-        }
-        let names: Vec<&str> = self.region_names().chain(self.boundary_names()).collect();
+        let names: Vec<&str> = self.names().map(|(name, _)| name).collect();
         if !names.is_empty() {
             out.field("named", &names);
         }
@@ -150,13 +136,14 @@ impl<const D: usize> Problem<D> {
     /// [the field](field@Problem::source).
     #[must_use]
     pub fn constant_source(mut self, f: f64) -> Self {
-        self.source.add(None, f);
+        self.source.add(ALL, f);
         self
     }
-    /// Adds a load that is a smooth function of space.
+    /// Adds a load that is a smooth function of space. Other [data](Datum), discrete functions among them, are given by
+    /// name, `source_in("default", u)`: a datum for the name `default` is one without a name.
     #[must_use]
     pub fn source(mut self, f: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static) -> Self {
-        self.source.add(None, f);
+        self.source.add(ALL, f);
         self
     }
     /// Adds a load that may jump, or have a kink, where `level` changes its sign: a rule across a jump
@@ -184,20 +171,13 @@ impl<const D: usize> Problem<D> {
         f: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
         level: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        self.source.add(None, Datum::piecewise(f, level));
-        self
-    }
-    /// Adds a load that is a discrete function. Its integrals are exact where it is a polynomial in each cell: on its
-    /// own mesh and on uniform refinements of it.
-    #[must_use]
-    pub fn discrete_source(mut self, f: DiscreteFunction<D>) -> Self {
-        self.source.add(None, f);
+        self.source.add(ALL, Datum::piecewise(f, level));
         self
     }
     /// Sets Dirichlet data.
     #[must_use]
     pub fn dirichlet(mut self, u: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static) -> Self {
-        self.dirichlet.give(None, u.into());
+        self.dirichlet.give(ALL, u.into());
         self
     }
     /// Sets Neumann data, a function of the point and the outward normal.
@@ -206,7 +186,7 @@ impl<const D: usize> Problem<D> {
         mut self,
         q: impl Fn(&Point<D>, &Point<D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        self.neumann.give(None, BoundaryFlux::Function(Arc::new(q)));
+        self.neumann.give(ALL, BoundaryFlux::Function(Arc::new(q)));
         self
     }
     /// Sets the diffusion coefficient.
@@ -218,20 +198,7 @@ impl<const D: usize> Problem<D> {
     /// jumps within them no element reaches more than the order 1/2 in H1.
     #[must_use]
     pub fn coefficient(mut self, alpha: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static) -> Self {
-        self.coefficient.give(None, alpha.into());
-        self
-    }
-    /// Sets a diffusion coefficient that jumps where `level` changes its sign. Schemes evaluate the coefficient at the
-    /// points at which they evaluate a coefficient without a level ([`Problem::coefficient`]). Errors against an exact
-    /// solution, whose gradient jumps on the zero set of `level`, are integrated over cells divided along the zero set,
-    /// as loads are ([`Problem::piecewise_source`]).
-    #[must_use]
-    pub fn piecewise_coefficient(
-        mut self,
-        alpha: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
-        level: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
-    ) -> Self {
-        self.coefficient.give(None, Datum::piecewise(alpha, level));
+        self.coefficient.give(ALL, alpha.into());
         self
     }
     /// Sets the tensor by which the diffusion coefficient is multiplied: rows of numbers, or [`Tensor::function`]. It must be
@@ -239,14 +206,14 @@ impl<const D: usize> Problem<D> {
     /// constants are possible.
     #[must_use]
     pub fn tensor(mut self, tensor: impl Into<Tensor<D>>) -> Self {
-        self.tensor.give(None, tensor.into());
+        self.tensor.give(ALL, tensor.into());
         self
     }
     /// Sets the reaction coefficient: a number, a closure whose argument is written with its
     /// type, `|x: &Point<2>| ..`, or [`Datum::piecewise`].
     #[must_use]
     pub fn reaction(mut self, c: impl Into<Datum<D>>) -> Self {
-        self.reaction.give(None, c.into());
+        self.reaction.give(ALL, c.into());
         self
     }
     /// Sets an obstacle from below.
@@ -255,7 +222,7 @@ impl<const D: usize> Problem<D> {
         mut self,
         psi: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        self.lower.give(None, psi.into());
+        self.lower.give(ALL, psi.into());
         self
     }
     /// Sets an obstacle from above.
@@ -264,33 +231,13 @@ impl<const D: usize> Problem<D> {
         mut self,
         psi: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        self.upper.give(None, psi.into());
-        self
-    }
-    /// Sets an obstacle from below that is a discrete function. One with jumps bounds each cell by its own values; for
-    /// unknowns that cells share the largest of them holds.
-    #[must_use]
-    pub fn discrete_obstacle_below(mut self, psi: DiscreteFunction<D>) -> Self {
-        self.lower.give(None, psi.into());
-        self
-    }
-    /// Sets an obstacle from above that is a discrete function, as [`Problem::discrete_obstacle_below`]; for shared
-    /// unknowns the smallest value holds.
-    #[must_use]
-    pub fn discrete_obstacle_above(mut self, psi: DiscreteFunction<D>) -> Self {
-        self.upper.give(None, psi.into());
-        self
-    }
-    /// Sets Dirichlet data that are a discrete function: at a vertex the mean of its values there.
-    #[must_use]
-    pub fn discrete_dirichlet(mut self, u: DiscreteFunction<D>) -> Self {
-        self.dirichlet.give(None, u.into());
+        self.upper.give(ALL, psi.into());
         self
     }
     /// Sets the Signorini condition `u >= g` on the contact boundary.
     #[must_use]
     pub fn signorini(mut self, gap: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static) -> Self {
-        self.gap.give(None, gap.into());
+        self.gap.give(ALL, gap.into());
         self
     }
     /// Sets the threshold of friction on the Neumann boundary, as [`Problem::friction_on`] on a group.
@@ -299,7 +246,7 @@ impl<const D: usize> Problem<D> {
         mut self,
         threshold: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        self.friction.give(None, threshold.into());
+        self.friction.give(ALL, threshold.into());
         self
     }
     /// Sets the constraint set: where obstacles and gap bind. A [`Study`](crate::study::Study) may

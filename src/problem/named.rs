@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::datum::{BoundaryFlux, Datum};
+use super::given::{ALL, AnyGiven};
 use super::{Given, Problem, Robin, Tensor, ValueOf};
 use crate::error::Error;
 use crate::input::excerpt;
@@ -44,42 +45,44 @@ impl<const D: usize> Problem<D> {
         self
     }
     /// Sets the diffusion coefficient in a region: a number, or a closure whose argument is written with
-    /// its type, `|x: &Point<2>| ..`. It is one in regions for which none is given.
+    /// its type, `|x: &Point<2>| ..`, or another [`Datum`]. It is one in regions for which none is given. Schemes
+    /// evaluate one with a level at the points at which they evaluate one without; errors against an exact solution,
+    /// whose gradient jumps on the zero set of the level, are integrated over cells divided along it.
     #[must_use]
     pub fn coefficient_in(mut self, region: &str, alpha: impl Into<Datum<D>>) -> Self {
-        self.coefficient.give(Some(region), alpha.into());
+        self.coefficient.give(region, alpha.into());
         self
     }
     /// Sets the tensor of the diffusion coefficient in a region, as [`Problem::tensor`].
     #[must_use]
     pub fn tensor_in(mut self, region: &str, tensor: impl Into<Tensor<D>>) -> Self {
-        self.tensor.give(Some(region), tensor.into());
+        self.tensor.give(region, tensor.into());
         self
     }
     /// Adds a load in a region: a number or a closure, as for [`Problem::coefficient_in`].
     #[must_use]
     pub fn source_in(mut self, region: &str, f: impl Into<Datum<D>>) -> Self {
-        self.source.add(Some(region), f);
+        self.source.add(region, f);
         self
     }
     /// Sets the reaction coefficient in a region.
     #[must_use]
     pub fn reaction_in(mut self, region: &str, c: impl Into<Datum<D>>) -> Self {
-        self.reaction.give(Some(region), c.into());
+        self.reaction.give(region, c.into());
         self
     }
     /// Sets an obstacle from below in a region. Where regions meet the higher obstacle holds for
     /// unknowns that cells share.
     #[must_use]
     pub fn obstacle_below_in(mut self, region: &str, psi: impl Into<Datum<D>>) -> Self {
-        self.lower.give(Some(region), psi.into());
+        self.lower.give(region, psi.into());
         self
     }
     /// Sets an obstacle from above in a region. Where regions meet the lower obstacle holds for
     /// unknowns that cells share.
     #[must_use]
     pub fn obstacle_above_in(mut self, region: &str, psi: impl Into<Datum<D>>) -> Self {
-        self.upper.give(Some(region), psi.into());
+        self.upper.give(region, psi.into());
         self
     }
     /// Sets Dirichlet data on a boundary group. Unknowns on several Dirichlet groups take the value of
@@ -87,7 +90,7 @@ impl<const D: usize> Problem<D> {
     /// facet those of its own group.
     #[must_use]
     pub fn dirichlet_on(mut self, group: &str, u: impl Into<Datum<D>>) -> Self {
-        self.dirichlet.give(Some(group), u.into());
+        self.dirichlet.give(group, u.into());
         self
     }
     /// Sets Neumann data on a boundary group, a function of the point and the outward normal.
@@ -98,7 +101,7 @@ impl<const D: usize> Problem<D> {
         q: impl Fn(&Point<D>, &Point<D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
         let flux = BoundaryFlux::Function(Arc::new(q));
-        self.neumann.give(Some(group), flux);
+        self.neumann.give(group, flux);
         self
     }
     /// Makes a boundary group a Robin side, `alpha du/dn + k (u - g) = 0` with the coefficient `k >= 0` and the value `g`:
@@ -110,7 +113,7 @@ impl<const D: usize> Problem<D> {
         coefficient: impl Into<Datum<D>>,
         value: impl Into<Datum<D>>,
     ) -> Self {
-        self.robin.give(Some(group), Robin::new(coefficient, value));
+        self.robin.give(group, Robin::new(coefficient, value));
         self
     }
     /// Gives a boundary group simplified friction (Tresca): the flux is at most `g >= 0`, `|alpha du/dn| <= g`; where it is
@@ -119,60 +122,57 @@ impl<const D: usize> Problem<D> {
     /// 48 (2010), 708-733, section 2).
     #[must_use]
     pub fn friction_on(mut self, group: &str, threshold: impl Into<Datum<D>>) -> Self {
-        self.friction.give(Some(group), threshold.into());
+        self.friction.give(group, threshold.into());
         self
     }
     /// Sets the Signorini condition `u >= g` on a boundary group.
     #[must_use]
     pub fn signorini_on(mut self, group: &str, gap: impl Into<Datum<D>>) -> Self {
-        self.gap.give(Some(group), gap.into());
+        self.gap.give(group, gap.into());
         self
     }
 
-    /// The names of regions that have data.
-    pub(super) fn region_names(&self) -> impl Iterator<Item = &str> {
-        let data = [&self.coefficient, &self.source, &self.reaction, &self.lower, &self.upper];
-        data.into_iter().flat_map(Given::names).chain(self.tensor.names())
+    /// All data with their names in messages; those of the boundary with the condition of their facets.
+    pub(super) fn data(&self) -> [(&'static str, Option<BoundaryCondition>, &dyn AnyGiven); 11] {
+        use BoundaryCondition::{Contact, Dirichlet, Neumann};
+        [
+            ("source", None, &self.source),
+            ("coefficient", None, &self.coefficient),
+            ("tensor coefficient", None, &self.tensor),
+            ("reaction", None, &self.reaction),
+            ("lower obstacle", None, &self.lower),
+            ("upper obstacle", None, &self.upper),
+            ("Dirichlet datum", Some(Dirichlet), &self.dirichlet),
+            ("gap", Some(Contact), &self.gap),
+            ("Neumann datum", Some(Neumann), &self.neumann),
+            ("Robin datum", Some(Neumann), &self.robin),
+            ("threshold of friction", Some(Neumann), &self.friction),
+        ]
+    }
+    /// The names of regions that have data, and those of boundary groups with their condition.
+    pub(super) fn names(&self) -> impl Iterator<Item = (&str, Option<BoundaryCondition>)> {
+        self.data().into_iter().flat_map(|(_, condition, given)| {
+            given.names().into_iter().map(move |name| (name, condition))
+        })
     }
     /// Refuses two data of one kind for one name, or without a name.
     pub(crate) fn check_given_once(&self) -> Result<(), Error> {
-        let check = |(datum, twice): (&'static str, Option<Option<&str>>)| match twice {
-            None => Ok(()),
-            Some(name) => {
-                let place =
-                    name.map_or("without a name".to_owned(), |n| format!("for {}", excerpt(n)));
-                Err(Error::GivenTwice(format!(
+        for (datum, _, given) in self.data() {
+            if let Some(name) = given.given_twice() {
+                let place = match name {
+                    ALL => "without a name".to_owned(),
+                    name => format!("for {}", excerpt(name)),
+                };
+                return Err(Error::GivenTwice(format!(
                     "the {datum} {place} is given twice: give it once; only sources add up"
-                )))
+                )));
             }
-        };
-        let data = [
-            ("source", self.source.given_twice()),
-            ("coefficient", self.coefficient.given_twice()),
-            ("tensor coefficient", self.tensor.given_twice()),
-            ("reaction", self.reaction.given_twice()),
-            ("lower obstacle", self.lower.given_twice()),
-            ("upper obstacle", self.upper.given_twice()),
-            ("Dirichlet datum", self.dirichlet.given_twice()),
-            ("Neumann datum", self.neumann.given_twice()),
-            ("gap", self.gap.given_twice()),
-            ("Robin datum", self.robin.given_twice()),
-            ("threshold of friction", self.friction.given_twice()),
-        ];
-        data.into_iter().try_for_each(check)
+        }
+        Ok(())
     }
     /// The boundary groups that have data, each with its condition.
     fn boundary_groups(&self) -> impl Iterator<Item = (&str, BoundaryCondition)> {
-        let dirichlet = self.dirichlet.names().map(|name| (name, BoundaryCondition::Dirichlet));
-        let contact = self.gap.names().map(|name| (name, BoundaryCondition::Contact));
-        let neumann = self.neumann.names().map(|name| (name, BoundaryCondition::Neumann));
-        let robin = self.robin.names().map(|name| (name, BoundaryCondition::Neumann));
-        let friction = self.friction.names().map(|name| (name, BoundaryCondition::Neumann));
-        dirichlet.chain(contact).chain(neumann).chain(robin).chain(friction)
-    }
-    /// The names of boundary groups that have data.
-    pub(super) fn boundary_names(&self) -> impl Iterator<Item = &str> {
-        self.boundary_groups().map(|(name, _)| name)
+        self.names().filter_map(|(name, condition)| Some((name, condition?)))
     }
     /// The condition to which the data of a group belong.
     pub(super) fn condition_of(&self, group: &str) -> Option<BoundaryCondition> {
@@ -180,7 +180,7 @@ impl<const D: usize> Problem<D> {
     }
     /// Whether some data are those of a named region or boundary group.
     pub(crate) fn has_named_data(&self) -> bool {
-        self.region_names().chain(self.boundary_names()).next().is_some()
+        self.names().next().is_some()
     }
     /// The data in a region with these names and on a boundary group with these names, without names.
     pub(crate) fn in_group(&self, region: &[String], boundary: &[String]) -> Self {

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::datum::{BoundaryFlux, Datum, Shifted};
+use super::unknown_name::unknown_name;
 use super::{BodyConstants, Given, Problem, Robin, Tensor};
 use crate::error::Error;
 use crate::input::{excerpt, excerpts};
@@ -134,11 +135,10 @@ impl<const D: usize> DataOnMesh<D> {
     pub fn new(problem: &Problem<D>, mesh: &Mesh<D>) -> Result<Self, Error> {
         problem.check_given_once()?;
         mesh.check_boundary_conditions()?;
-        let groups = (mesh.regions(), mesh.boundary_groups());
-        let mut found = Self::of_groups(problem, groups.0, groups.1, mesh.groups_inside())?;
+        let mut found = Self::of_groups(problem, mesh)?;
         let on_mesh =
             |_: usize, source: Option<&Datum<D>>| source.map(|source| source.on_mesh(mesh));
-        found.source = found.source.changed((groups.0.len(), false), on_mesh);
+        found.source = found.source.changed((mesh.regions().len(), false), on_mesh);
         let Self { coefficient, source, reaction, lower, upper, gap, .. } = &found;
         let data = [coefficient, source, reaction, lower, upper, gap].into_iter();
         let robin = found.robin.all().flat_map(Robin::data).chain(found.friction.all());
@@ -186,22 +186,15 @@ impl<const D: usize> DataOnMesh<D> {
     }
 
     /// The data of a problem in regions and boundary groups.
-    fn of_groups(
-        problem: &Problem<D>,
-        regions: &[Vec<String>],
-        boundary: &[BoundaryGroup],
-        inside: &[String],
-    ) -> Result<Self, Error> {
-        let regions: Vec<&[String]> = regions.iter().map(|names| &names[..]).collect();
-        let groups: Vec<&[String]> = boundary.iter().map(|group| &group.names[..]).collect();
-        let on_regions = problem.region_names().map(|name| (name, false));
-        for (name, is_boundary) in on_regions.chain(problem.boundary_names().map(|n| (n, true))) {
-            let all = if is_boundary { &groups } else { &regions };
-            if !all.iter().any(|names| names.iter().any(|n| n == name)) {
-                let is_inside = is_boundary && inside.iter().any(|n| n == name);
-                return Err(unknown_group(name, (is_boundary, is_inside), all));
+    fn of_groups(problem: &Problem<D>, mesh: &Mesh<D>) -> Result<Self, Error> {
+        for (name, condition) in problem.names() {
+            if let Some(message) = unknown_name(mesh, name, condition.is_some()) {
+                return Err(Error::UnknownGroup(message));
             }
         }
+        let boundary = mesh.boundary_groups();
+        let regions: Vec<&[String]> = mesh.regions().iter().map(|names| &names[..]).collect();
+        let groups: Vec<&[String]> = boundary.iter().map(|group| &group.names[..]).collect();
         let given = |group: &&BoundaryGroup| {
             let Problem { neumann, robin, friction, .. } = problem;
             let names = &group.names;
@@ -259,23 +252,4 @@ impl<const D: usize> DataOnMesh<D> {
             constants_differ: false,
         })
     }
-}
-
-/// The error for a name that no region or boundary group has.
-fn unknown_group(
-    name: &str,
-    (is_boundary, is_inside): (bool, bool),
-    groups: &[&[String]],
-) -> Error {
-    let (kind, name) = (if is_boundary { "boundary group" } else { "region" }, excerpt(name));
-    let known = match &excerpts(groups.iter().copied().flatten())[..] {
-        known if is_inside => {
-            format!("it lies inside the domain, between two cells; the boundary has {known}")
-        }
-        "" => "it has none with a name".to_owned(),
-        known => format!("it has {known}"),
-    };
-    Error::UnknownGroup(format!(
-        "the problem has data for {kind} {name}, which the mesh does not have: {known}"
-    ))
 }

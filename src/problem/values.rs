@@ -1,12 +1,10 @@
 //! Numbers of a solution for which a problem asks by name.
 
 use super::Problem;
-use crate::input::{excerpt, excerpts};
+use super::given::ALL;
+use super::unknown_name::unknown;
 use crate::mesh::{BoundaryCondition, Mesh, describe_point};
 use crate::real::Point;
-
-/// The name of all regions, and of all boundary groups.
-const ALL: &str = "default";
 
 /// A barycentric coordinate that is negative by no more than this counts as zero.
 pub(crate) const ROUNDING: f64 = 1e-8;
@@ -74,13 +72,4 @@ impl<const D: usize> ValueOf<D> {
         (!known.any(|group| Self::is_meant(name, names(group))))
             .then(|| unknown(&format!("{kind}boundary group"), name, all))
     }
-}
-
-/// The sentence for a name that the mesh does not have.
-fn unknown<'n>(kind: &str, name: &str, known: impl Iterator<Item = &'n String>) -> String {
-    let known = match &excerpts(known)[..] {
-        "" => "it has none with a name".to_owned(),
-        known => format!("it has {known}"),
-    };
-    format!("the mesh has no {kind} `{}`; {known}", excerpt(name))
 }

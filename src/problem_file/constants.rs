@@ -4,7 +4,8 @@ use toml::de::DeTable;
 
 use super::error::{ProblemFileError, ProblemFileErrorKind};
 use super::expression::{Names, use_of_name};
-use super::table::{Constants, Formula, Source, Value};
+use super::formula::Formula;
+use super::table::{Constants, Source, Value};
 use crate::input::excerpt;
 
 /// Every combination of one value for each name, the last name varying fastest.

@@ -56,6 +56,7 @@ mod contents;
 mod data;
 mod error;
 mod expression;
+mod formula;
 mod table;
 
 pub use contents::ProblemFile;

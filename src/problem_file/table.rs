@@ -1,120 +1,18 @@
 //! Tables and values of a TOML file, with their places.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{ProblemFileError, ProblemFileErrorKind};
 use super::expression::{Expression, Names};
+use super::formula::Formula;
 use crate::input::excerpt;
 use crate::mesh::gmsh::{GmshError, GmshErrorKind, GmshFile};
-use crate::mesh::{FacetSearch, Shape, normal_of};
-use crate::problem::{BoundaryField, BoundaryFlux, Datum, Field};
-use crate::real::Point;
 
 /// A value with its place.
 pub(super) type Value<'t> = Spanned<DeValue<'t>>;
-
-/// The corners of a facet and its outward unit normal.
-pub(super) type FacetWithNormal<const D: usize> = ([Point<D>; D], Point<D>);
-
-/// Normals that differ by less are one.
-const SAME_NORMAL: f64 = 1e-12;
-/// A point lies in a facet up to this share of the extent of the boundary group, or as far as a mesh rounded to 32 bits
-/// may be off.
-const IN_FACET: f64 = 1e-6;
-
-/// A number or an expression.
-#[derive(Clone, Debug)]
-pub(super) enum Formula {
-    Number(f64),
-    Expression(Expression),
-}
-
-impl Formula {
-    /// The formula as a flux: a constant, a polynomial on every facet, or a function of the point and of the normal.
-    pub fn flux<const D: usize>(&self) -> BoundaryFlux<D> {
-        match self.clone() {
-            Self::Number(c) => BoundaryFlux::Constant(c),
-            Self::Expression(expression) => {
-                let degree = expression.degree(D);
-                let value: BoundaryField<D> = Arc::new(move |x, n| expression.on_boundary(x, n));
-                match degree {
-                    Some(degree) => BoundaryFlux::Polynomial { value, degree },
-                    None => BoundaryFlux::Function(value),
-                }
-            }
-        }
-    }
-    /// The formula as a datum on these facets of the boundary, of the point and of their normals. Where facets with
-    /// different normals meet, it is the largest of their values.
-    pub fn datum_on<const D: usize>(&self, facets: Vec<FacetWithNormal<D>>) -> Datum<D> {
-        let expression = match self {
-            Self::Expression(expression) if expression.has_variables(D) => expression.clone(),
-            _ => return self.datum(),
-        };
-        let (corners, normals): (Vec<_>, Vec<_>) = facets.into_iter().unzip();
-        let normal = normals.first().copied().unwrap_or_else(Point::zeros);
-        if normals.iter().any(|other| (other - normal).norm() > SAME_NORMAL) {
-            let size = corners.iter().flatten().map(|x| x.amax()).fold(0.0, f64::max);
-            let from_first = |x: &Point<D>| (x - corners[0][0]).amax();
-            let extent = corners.iter().flatten().map(from_first).fold(f64::MIN_POSITIVE, f64::max);
-            let rounding = 2.0 * f64::from(f32::EPSILON) * size / extent;
-            let search = FacetSearch::new(corners, IN_FACET.max(rounding));
-            return Datum::Function(Arc::new(move |x| {
-                let of_facets =
-                    search.containing(x).map(|k| expression.on_boundary(x, &normals[k]));
-                of_facets.fold(f64::NAN, f64::max)
-            }));
-        }
-        self.datum_with(normal)
-    }
-    /// The formula as a datum on these facets of the boundary, of the point and of the outward normal of a shape there;
-    /// none where facets lie on both sides of the shape.
-    pub fn datum_along<const D: usize>(
-        &self,
-        shape: &Self,
-        length: f64,
-        facets: Vec<FacetWithNormal<D>>,
-    ) -> Option<Datum<D>> {
-        let expression = match self {
-            Self::Expression(expression) if expression.has_variables(D) => expression.clone(),
-            _ => return Some(self.datum()),
-        };
-        let shape = shape.datum::<D>();
-        let shape: Shape<D> = Arc::new(move |x| shape.at(x));
-        let mut sides = facets.iter().map(|(corners, normal)| {
-            let middle = corners.iter().sum::<Point<D>>() / D as f64;
-            normal_of(&shape, &middle, length).dot(normal).signum()
-        });
-        let side = sides.next().unwrap_or(1.0);
-        sides.all(|other| other == side).then(|| {
-            let normal = move |x: &Point<D>| normal_of(&shape, x, length) * side;
-            Datum::Function(Arc::new(move |x| expression.on_boundary(x, &normal(x))))
-        })
-    }
-    /// The formula as a datum: a constant, a polynomial, or a function of the point.
-    pub fn datum<const D: usize>(&self) -> Datum<D> {
-        // no variable of the formula is a component of a normal
-        self.datum_with(Point::zeros())
-    }
-    /// The formula as a datum, with this normal where it contains one.
-    fn datum_with<const D: usize>(&self, normal: Point<D>) -> Datum<D> {
-        match self.clone() {
-            Self::Number(c) => Datum::Constant(c),
-            Self::Expression(expression) => {
-                let degree = expression.degree(D);
-                let value: Field<D> = Arc::new(move |x| expression.on_boundary(x, &normal));
-                match degree {
-                    Some(degree) => Datum::Polynomial { value, degree },
-                    None => Datum::Function(value),
-                }
-            }
-        }
-    }
-}
 
 /// Where the problem of a file is posed.
 pub(super) enum Place {

@@ -3,7 +3,7 @@
 use super::free_boundary;
 use super::scene::{Scene, over_plane};
 use crate::mesh::BoxDomain;
-use crate::problem::Exact;
+use crate::problem::{Datum, Exact};
 use crate::real::Point;
 use crate::scheme::Regularity;
 
@@ -70,7 +70,7 @@ pub fn contrast_disc_2d(contrast: f64) -> Scene<2> {
         if s <= A * A { Point::zeros() } else { x * ((1.0 - A * A / s) / alpha(x)) }
     };
     let problem = over_plane()
-        .piecewise_coefficient(alpha, |x| 1.0 - x.norm())
+        .coefficient_in("default", Datum::piecewise(alpha, |x| 1.0 - x.norm()))
         .constant_source(-2.0)
         .solved_by(
             Exact::new(value, gradient)

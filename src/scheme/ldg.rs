@@ -4,36 +4,22 @@ use super::{
     BrokenScheme, ExpectedOrders, SchemeOptions, Setting, broken_energy_order, with_duality,
 };
 use crate::element::Element;
-use crate::facet::{FacetForm, Lifts, LocalFluxes};
+use crate::facet::{FacetForm, LocalFluxes};
 use crate::mesh::Mesh;
 
-/// The form [`LocalFluxes`] on broken elements, by default with lifts of degree `k - 1` on elements of degree `k`.
+/// The form [`LocalFluxes`] on broken elements, by default with the factor one, mean fluxes and lifts of degree `k - 1`
+/// on elements of degree `k`.
 ///
 /// Orders: F. Wang, W. Han, X.-L. Cheng, SIAM J. Numer. Anal. 48 (2010), 708-733 for obstacles and
 /// IMA J. Numer. Anal. 31 (2011), 1754-1772 for Signorini.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ldg {
-    /// The factor of the penalty; by default one.
-    pub eta: f64,
-    /// The switch `beta`: off for the mean flux, on for the flux of one side, the side from which a
-    /// fixed direction points to the other.
-    pub switch: bool,
-    /// The degree of the lifts.
-    pub lifts: Lifts,
-}
-
-impl Default for Ldg {
-    fn default() -> Self {
-        Self { eta: 1.0, switch: false, lifts: Lifts::Reduced }
-    }
-}
+pub type Ldg = LocalFluxes;
 
 impl BrokenScheme for Ldg {
     fn name_on_linears(&self) -> &str {
         if self.switch { "ldg-switch" } else { "ldg" }
     }
     fn form_on<const D: usize>(&self, _: &dyn Element<D>, _: &Mesh<D>) -> Box<dyn FacetForm<D>> {
-        Box::new(LocalFluxes { eta: self.eta, switch: self.switch, lifts: self.lifts })
+        Box::new(*self)
     }
     fn options(&self) -> SchemeOptions {
         SchemeOptions { sigma: Some(self.eta), lifts: Some(self.lifts), ..Default::default() }

@@ -1,8 +1,6 @@
 //! Schemes: an element, a facet form and a way to impose Dirichlet data. Nothing else: where an
 //! inequality binds is for the [constraint set](crate::constraint).
 
-mod bmmpr;
-mod br2;
 mod broken;
 mod conforming;
 mod crouzeix_raviart;
@@ -10,19 +8,19 @@ mod definition;
 mod energy_order;
 mod interior_penalty_methods;
 mod ldg;
+mod lifting_methods;
 mod named_scheme;
 mod options;
 mod wopsip;
 
-pub use bmmpr::Bmmpr;
-pub use br2::Br2;
 pub use broken::{BrokenScheme, OnElement, WithBrokenElement};
 pub use conforming::{ConformingP1, ConformingP2};
 pub use crouzeix_raviart::NonconformingP1;
 pub use definition::Scheme;
 pub use interior_penalty_methods::{Iipg, InteriorPenaltyMethod, Nipg, Sipg};
 pub use ldg::Ldg;
-pub use named_scheme::{NamedScheme, SchemeNameError, SchemeNameErrorKind};
+pub use lifting_methods::{Bmmpr, Br2, LiftingMethod};
+pub use named_scheme::{NamedScheme, SchemeNameError};
 pub use options::SchemeOptions;
 pub use wopsip::Wopsip;
 

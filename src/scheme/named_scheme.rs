@@ -30,37 +30,12 @@ pub struct NamedScheme {
 
 /// Why a scheme as a user wrote it cannot be made: what is wrong, where, and what may stand there.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{message}")]
-#[non_exhaustive]
-pub struct SchemeNameError {
-    /// What is wrong.
-    pub kind: SchemeNameErrorKind,
-    message: String,
-}
+#[error("{0}")]
+pub struct SchemeNameError(String);
 
-/// What is wrong with a scheme as a user wrote it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum SchemeNameErrorKind {
-    /// No scheme has the name.
-    Unknown,
-    /// No constraint set has the name after the colon.
-    UnknownPlacement,
-    /// The element of the scheme has no values that the constraint set binds.
-    UnfitPlacement,
-    /// The scheme does not take the key.
-    UnknownKey,
-    /// A value of a key is out of its range.
-    Value,
-    /// Two keys choose the same thing.
-    Twice,
-}
-
-impl SchemeNameErrorKind {
-    /// The error of this kind in what was written.
-    fn of(self, text: &str, what: impl fmt::Display) -> SchemeNameError {
-        SchemeNameError { kind: self, message: format!("{}: {what}", excerpt(text)) }
-    }
+/// The error about what was written.
+fn wrong(text: &str, what: impl fmt::Display) -> SchemeNameError {
+    SchemeNameError(format!("{}: {what}", excerpt(text)))
 }
 
 fn names(known: &[(&str, &str)]) -> String {
@@ -80,9 +55,9 @@ impl FromStr for NamedScheme {
             None => (head, None),
         };
         let Some(&(name, _)) = SCHEMES.iter().find(|known| known.0 == name) else {
-            let message =
-                format!("unknown scheme {:?}; there are: {}", excerpt(name), names(SCHEMES));
-            return Err(SchemeNameError { kind: SchemeNameErrorKind::Unknown, message });
+            let known = names(SCHEMES);
+            let message = format!("unknown scheme {:?}; there are: {known}", excerpt(name));
+            return Err(SchemeNameError(message));
         };
         let mut scheme = Self::plain(name);
         if let Some(placement) = placement {
@@ -204,7 +179,7 @@ impl NamedScheme {
             None => {
                 let (unknown, known) = (excerpt(placement), names(&CONSTRAINT_SETS));
                 let what = format!("there is no placement {unknown:?}; there are: {known}");
-                Err(SchemeNameErrorKind::UnknownPlacement.of(text, what))
+                Err(wrong(text, what))
             }
             Some(set) if fits(set.0) => Ok(set.0),
             Some(_) => {
@@ -212,7 +187,7 @@ impl NamedScheme {
                 let allowed = names(&sets);
                 let what =
                     format!("the element of the scheme has no such values; it has: {allowed}");
-                Err(SchemeNameErrorKind::UnfitPlacement.of(text, what))
+                Err(wrong(text, what))
             }
         }
     }
@@ -223,7 +198,7 @@ impl NamedScheme {
         if !takes.contains(&key) {
             let allowed = if takes.is_empty() { "no key".to_owned() } else { takes.join(", ") };
             let what = format!("{name} does not take {:?}; it takes: {allowed}", excerpt(key));
-            return Err(SchemeNameErrorKind::UnknownKey.of(text, what));
+            return Err(wrong(text, what));
         }
         let is_penalty = |key: &str| ["factor", "eta", "sigma"].contains(&key);
         let is_same = |set: &&str| *set == key || is_penalty(set) && is_penalty(key);
@@ -231,10 +206,10 @@ impl NamedScheme {
         if let Some(before) = before {
             let what =
                 format!("the keys {before} and {key} choose the same penalty; give one of them");
-            return Err(SchemeNameErrorKind::Twice.of(text, what));
+            return Err(wrong(text, what));
         }
-        self.options.set(key, value).map_err(|allowed| {
-            SchemeNameErrorKind::Value.of(text, format!("{key} = {}: {allowed}", excerpt(value)))
-        })
+        self.options
+            .set(key, value)
+            .map_err(|allowed| wrong(text, format_args!("{key} = {}: {allowed}", excerpt(value))))
     }
 }

@@ -398,7 +398,7 @@ fn reactions_of_every_kind_of_source() {
         let discrete = |c: f64| {
             let load = Problem::<2>::new().reaction(1.0).source(move |x| x[0] + 2.0 * c);
             let f = unilateral::nested::solve(&load, &mesh, &ConformingP1).unwrap().function();
-            Problem::<2>::new().discrete_source(f.unwrap()).reaction(2.0)
+            Problem::<2>::new().source_in("default", f.unwrap()).reaction(2.0)
         };
         for of in [&jumps as &dyn Fn(f64) -> Problem<2>, &discrete] {
             let problems = [0.0, c].map(of);

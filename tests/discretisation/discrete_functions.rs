@@ -46,7 +46,7 @@ fn difference_from_mass<const D: usize>(
 ) -> f64 {
     let scheme = scheme::<D>(name);
     let discretise = |problem| Discretisation::new(&*scheme, problem, mesh, quadrature).unwrap();
-    let problem = Problem::new().discrete_source(u.clone());
+    let problem = Problem::new().source_in("default", u.clone());
     let of = discretise(&problem);
     let (datum, element) = (Datum::from(u.clone()), scheme.element());
     let mut interpolant = vec![0.0; of.unknowns()];
@@ -126,7 +126,7 @@ fn functions_on_other_meshes_are_integrated_by_the_rule() {
     assert!(difference_from_mass("p1", &u, &other, DataQuadrature::default()) < 1e-12);
     assert_eq!(u.times(2.0).value_at(&Point::from([0.3, 0.4])).map(|v| v.round()), Some(2.0));
 
-    let problem = Problem::new().discrete_source(u);
+    let problem = Problem::new().source_in("default", u);
     let unproven = |mesh| solve(&problem, mesh, &ConformingP1).unwrap().bound().unwrap().unproven;
     let fine = mesh.refine().unwrap().0;
     assert_eq!([unproven(&mesh), unproven(&fine)], [[], []]);
@@ -143,7 +143,7 @@ fn functions_on_meshes_with_a_multiple_of_the_cells_are_no_polynomials() {
     let others = [(square, [4, 2]), (inner.clone(), [2, 2]), (inner, [4, 4])];
     for name in ["p1", "sipg"] {
         let u = function(name, &mesh, &numbers(unknowns(name, &mesh)));
-        let problem = Problem::new().discrete_source(u);
+        let problem = Problem::new().source_in("default", u);
         let fine = mesh.refine().unwrap().0;
         let found = |mesh: &Mesh<2>, quadrature: DataQuadrature| {
             let mut nested = NestedIteration::new(&problem, mesh).quadrature(quadrature);
@@ -181,7 +181,7 @@ fn functions_are_continued_to_meshes_of_the_same_domain_alone() {
     for x in fine.vertices() {
         assert!((u.value_at(x).unwrap() - linear(x)).abs() < 1e-12, "{x}");
     }
-    let problem = Problem::new().discrete_source(u);
+    let problem = Problem::new().source_in("default", u);
     let wide = BoxDomain::dirichlet(Point::repeat(-9.0), Point::repeat(9.0));
     let mesh = Mesh::kuhn_box(&wide, [4; 2]).unwrap();
     let error = solve(&problem, &mesh, &ConformingP1).unwrap_err();
@@ -203,8 +203,8 @@ fn obstacles_with_jumps_bound_each_cell_by_its_own_values() {
     let values = numbers(3 * mesh.n_cells());
     let psi = function("sipg", &mesh, &values);
     let above = psi.clone();
-    let lower = Problem::new().discrete_obstacle_below(psi);
-    let upper = Problem::new().discrete_obstacle_above(above);
+    let lower = Problem::new().obstacle_below_in("default", psi);
+    let upper = Problem::new().obstacle_above_in("default", above);
     let bounds = |problem: &Problem<2>, name: &str| {
         let of = Discretisation::new(&*scheme(name), problem, &mesh, Default::default());
         of.unwrap().bounds().unwrap()
@@ -226,7 +226,7 @@ fn obstacles_with_jumps_bound_each_cell_by_its_own_values() {
 fn dirichlet_data_with_jumps_are_means_at_vertices() {
     let mesh = cube::<2>(3);
     let values = numbers(3 * mesh.n_cells());
-    let problem = Problem::new().discrete_dirichlet(function("sipg", &mesh, &values));
+    let problem = Problem::new().dirichlet_on("default", function("sipg", &mesh, &values));
     let of = Discretisation::new(&ConformingP1, &problem, &mesh, Default::default()).unwrap();
     let mut fixed = 0;
     for (v, bound) in of.bounds().unwrap().iter().enumerate() {
@@ -253,8 +253,8 @@ fn data_on_one_mesh_of_a_hierarchy_serve_on_all() {
     let pressed = Problem::new().constant_source(-40.0);
     let source = solve(&pressed, fine, &Sipg::default()).unwrap().function().unwrap();
     let problem = Problem::new()
-        .discrete_source(source.times(10.0))
-        .discrete_obstacle_below(function("sipg", coarse, &steps));
+        .source_in("default", source.times(10.0))
+        .obstacle_below_in("default", function("sipg", coarse, &steps));
     for name in ["p1", "sipg"] {
         let nested = solve(&problem, &meshes, &*scheme(name)).unwrap();
         let flat = solve(&problem, fine, &*scheme(name)).unwrap();
@@ -276,7 +276,7 @@ fn an_obstacle_that_is_zero_but_for_rounding_meets_zero() {
         };
         let problem = |size| {
             let obstacle = function(name, &mesh, &small(size));
-            Problem::new().constant_source(-1.0).discrete_obstacle_below(obstacle)
+            Problem::new().constant_source(-1.0).obstacle_below_in("default", obstacle)
         };
         let rounding = problem(1e-16);
         let solved = solve(&rounding, &mesh, &*scheme(name)).unwrap();
@@ -336,7 +336,7 @@ fn implicit_steps_keep_the_load() {
         let step = Problem::new()
             .reaction(1.0 / dt)
             .constant_source(-8.0)
-            .discrete_source(old.function.times(1.0 / dt))
+            .source_in("default", old.function.times(1.0 / dt))
             .obstacle_below(|_| -0.2);
         let mut step = NestedIteration::new(&step, &mesh).start_from(&old.solution);
         last = step.solve(&Sipg::default()).unwrap().keep();

@@ -290,7 +290,7 @@ fn discrete_functions_are_continued_to_the_shape() {
     let coarse = problem.bind_boundary(disc()).unwrap();
     let u = solve(&problem, &coarse, &ConformingP1).unwrap().function().unwrap();
     let fine = coarse.refine().unwrap().0;
-    let next = Problem::new().reaction(1.0).discrete_source(u).dirichlet_on("rim", 0.0);
+    let next = Problem::new().reaction(1.0).source_in("default", u).dirichlet_on("rim", 0.0);
     let unproven = |mesh: &Mesh<2>| {
         let solved = solve(&next, mesh, &Sipg::default()).unwrap();
         assert!(solved.converged());

@@ -119,24 +119,6 @@ fn components_that_overlap() {
     check::<3>();
 }
 
-/// Ten triangles around a vertex whose angles add up to two turns: no facet is folded.
-#[test]
-fn a_star_of_two_turns() {
-    let turns = |turns: f64| {
-        let angle = |k: u32| f64::from(k) / 10.0 * turns * std::f64::consts::TAU;
-        let ring = (0..10).map(|k| Point::from([angle(k).cos(), angle(k).sin()]));
-        let vertices = std::iter::once(Point::zeros()).chain(ring).collect();
-        let cells = (0..10).flat_map(|k| [0, k + 1, (k + 1) % 10 + 1]).collect();
-        let outer = |k: u32| TaggedFacet {
-            vertices: [k + 1, (k + 1) % 10 + 1],
-            condition: BoundaryCondition::Dirichlet,
-        };
-        Raw { vertices, cells, boundary: (0..10).map(outer).collect() }
-    };
-    assert_eq!(made(&turns(1.0)).unwrap().n_cells(), 10);
-    check_overlap(&turns(2.0));
-}
-
 /// No sound mesh is refused: moved vertices, any numbering, holes, three parts.
 #[test]
 fn sound_meshes_are_accepted() {

@@ -16,8 +16,13 @@ fn wrong_meshes_are_refused() {
     let cases: &[(&str, &str, String, &[&str])] = &[
         ("radial-2d", "empty", String::new(), &["not a Gmsh mesh"]),
         ("radial-2d", "prose", "Dear reader,\n".into(), &["not a Gmsh mesh", "$MeshFormat"]),
-        ("radial-2d", "half", sound[..sound.len() / 2].into(), &["the file ends", "line"]),
-        ("radial-2d", "three-quarters", sound[..sound.len() * 3 / 4].into(), &["the file ends"]),
+        ("radial-2d", "half", sound[..sound.len() / 2].into(), &["the end of the file", "line"]),
+        (
+            "radial-2d",
+            "three-quarters",
+            sound[..sound.len() * 3 / 4].into(),
+            &["the end of the file"],
+        ),
         ("radial-2d", "groups", without_groups, &["physical group", "dirichlet"]),
         (
             "radial-2d",

@@ -70,22 +70,24 @@ fn an_item_without_a_name_continues_the_scheme_before_it() {
 
 #[test]
 fn what_a_scheme_does_not_take_is_refused_with_what_it_takes() {
-    let refused = |text: &str| text.parse::<NamedScheme>().unwrap_err().kind;
-    assert_eq!(refused("p7"), SchemeNameErrorKind::Unknown);
-    assert_eq!(refused("sipg:edges"), SchemeNameErrorKind::UnknownPlacement);
+    let is_refused = |text: &str, why: &str| {
+        let message = text.parse::<NamedScheme>().unwrap_err().to_string();
+        assert!(message.contains(why), "{text}: {message}");
+    };
+    is_refused("p7", "unknown scheme \"p7\"; there are: p1");
+    is_refused("sipg:edges", "there is no placement \"edges\"; there are: vertices");
     for unfit in
         ["sipg:midpoints", "p1:bernstein", "cr:bernstein", "sipg:bernstein", "p2:facet-means"]
     {
-        assert_eq!(refused(unfit), SchemeNameErrorKind::UnfitPlacement);
+        is_refused(unfit, "the element of the scheme has no such values; it has: ");
     }
-    assert_eq!(refused("wopsip@sigma=1"), SchemeNameErrorKind::UnknownKey);
-    assert_eq!(refused("wopsip@"), SchemeNameErrorKind::UnknownKey);
-    assert_eq!(refused("wopsip@eta"), SchemeNameErrorKind::Value);
-    for value in ["-1", "NaN", "inf", "much", ""] {
-        assert_eq!(refused(&format!("wopsip@eta={value}")), SchemeNameErrorKind::Value);
+    is_refused("wopsip@sigma=1", "wopsip does not take \"sigma\"; it takes: factor");
+    is_refused("wopsip@", "wopsip does not take \"\"");
+    for value in ["", "=-1", "=NaN", "=inf", "=much", "="] {
+        is_refused(&format!("wopsip@eta{value}"), "must be a number, positive and finite");
     }
-    assert_eq!(refused("wopsip@eta=1,factor=1"), SchemeNameErrorKind::Twice);
-    assert_eq!(refused("ldg@lifts=full,lifts=full"), SchemeNameErrorKind::Twice);
+    is_refused("wopsip@eta=1,factor=1", "the keys eta and factor choose the same penalty");
+    is_refused("ldg@lifts=full,lifts=full", "the keys lifts and lifts choose the same");
     // every key of every scheme is taken, and no other
     let values = [
         ("factor", "2"),
@@ -101,7 +103,7 @@ fn what_a_scheme_does_not_take_is_refused_with_what_it_takes() {
                 Ok(scheme) => assert_eq!(scheme.to_string(), text, "the key changes the scheme"),
                 Err(error) => {
                     assert!(!keys_of_scheme(name).contains(&key), "{error}");
-                    assert_eq!(error.kind, SchemeNameErrorKind::UnknownKey);
+                    assert!(error.to_string().contains("does not take"), "{error}");
                 }
             }
         }

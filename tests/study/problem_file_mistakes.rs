@@ -122,7 +122,7 @@ fn mistakes_are_found_where_they_are() {
         (
             format!("{BOX}[coefficient]\ndefault = [[1, \"2 * x\"], [\"2 * x\", 1]]\n{SIDES}"),
             (3, 11),
-            "the least pivot of coefficient.default is -",
+            "coefficient.default: the least pivot is -",
         ),
         (
             format!("{BOX}[boundary.left]\nkind = \"neumann\"\nvalue = 1\n"),

@@ -6,7 +6,6 @@ use crate::arrays::array_of;
 use crate::mesh::boundary::{BoundaryCondition, BoundaryFacet};
 use crate::mesh::error::MeshError;
 use crate::mesh::groups::{BoundaryGroup, Groups};
-use crate::mesh::shapes::shape::Shapes;
 use crate::mesh::simplicial::Mesh;
 use crate::mesh::validate::check_size;
 use crate::real::Point;
@@ -158,8 +157,8 @@ impl<const D: usize> Mesh<D> {
             }
         };
         let groups = Arc::new(Groups { regions, boundary: sides, inside: Vec::new() });
-        let (whole, shapes) = (None, Shapes::default());
-        Ok(Self { vertices, cells, boundary, is_supported, groups, cell_regions, whole, shapes })
+        let mesh = Self { cell_regions, ..Self::without_boundary(vertices, cells) };
+        Ok(Self { boundary, is_supported, groups, ..mesh })
     }
 }
 

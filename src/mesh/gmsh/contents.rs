@@ -1,94 +1,46 @@
 //! The contents of a file before a mesh is made of them.
 
-use super::error::{FilePosition, GmshError, GmshErrorKind};
-use super::source::Source;
 use std::collections::{BTreeMap, HashMap};
+use std::ops::Range;
 
-/// The source of the physical groups of an element.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Membership {
-    /// The groups of a geometric entity, in MSH 4.1.
-    Entity(i64),
-    /// One group, in MSH 2.2; zero for none.
-    Group(i64),
-}
+use super::error::{GmshError, GmshErrorKind, place};
 
 /// The nodes, in the order of the file.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Nodes {
-    pub(super) tags: Vec<u64>,
-    pub(super) points: Vec<[f64; 3]>,
+    pub tags: Vec<u64>,
+    pub points: Vec<[f64; 3]>,
     /// Their offsets in bytes.
-    pub(super) offsets: Vec<usize>,
-}
-
-impl Nodes {
-    pub(super) fn reserve(&mut self, nodes: usize) {
-        self.tags.reserve(nodes);
-        self.points.reserve(nodes);
-        self.offsets.reserve(nodes);
-    }
-    /// Appends a node, whose coordinates must be finite.
-    pub(super) fn push(
-        &mut self,
-        source: &Source,
-        offset: usize,
-        node: u64,
-        point: [f64; 3],
-    ) -> Result<(), GmshError> {
-        if let Some(k) = point.iter().position(|x| !x.is_finite()) {
-            let (axis, value) = (['x', 'y', 'z'][k], point[k]);
-            let message = format!(
-                "coordinate {axis} of node {node} is {value}; coordinates must be finite, correct the geometry and mesh again"
-            );
-            return Err(source.error_at(offset, GmshErrorKind::NotFinite, message));
-        }
-        self.tags.push(node);
-        self.points.push(point);
-        self.offsets.push(offset);
-        Ok(())
-    }
+    pub offsets: Vec<usize>,
 }
 
 /// The simplices of one dimension, in the order of the file.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Simplices {
     /// Tags of the corners, one more than the dimension for each.
-    pub(super) corners: Vec<u64>,
-    pub(super) tags: Vec<u64>,
+    pub corners: Vec<u64>,
+    pub tags: Vec<u64>,
     /// Their offsets in bytes.
-    pub(super) offsets: Vec<usize>,
-    /// Runs of elements with the same groups: the first element of each, and its groups.
-    pub(super) memberships: Vec<(usize, Membership)>,
-    /// Numbers of elements of higher order, by order.
-    pub(super) curved: BTreeMap<u8, usize>,
+    pub offsets: Vec<usize>,
+    /// Runs of elements in the same physical groups: the first element of each, and the groups.
+    starts: Vec<(usize, Vec<i64>)>,
+    /// How many have more nodes than corners.
+    pub curved: usize,
 }
 
 impl Simplices {
-    pub(super) fn reserve(&mut self, elements: usize, corners_each: usize) {
-        self.tags.reserve(elements);
-        self.offsets.reserve(elements);
-        self.corners.reserve(elements * corners_each);
-    }
-    /// Appends an element whose corners are appended to `corners` before.
-    pub(super) fn push(&mut self, offset: usize, element: u64, order: u8, membership: Membership) {
-        if self.memberships.last().is_none_or(|&(_, last)| last != membership) {
-            self.memberships.push((self.tags.len(), membership));
+    /// Appends an element in these groups, whose corners are appended to `corners` before.
+    pub fn push(&mut self, (offset, tag): (usize, u64), groups: &[i64]) {
+        if self.starts.last().is_none_or(|(_, last)| last != groups) {
+            self.starts.push((self.tags.len(), groups.to_vec()));
         }
-        if order > 1 {
-            *self.curved.entry(order).or_insert(0) += 1;
-        }
-        self.tags.push(element);
+        self.tags.push(tag);
         self.offsets.push(offset);
     }
-    /// Runs of consecutive elements with the same groups.
-    pub(super) fn runs(&self) -> impl Iterator<Item = (std::ops::Range<usize>, Membership)> + '_ {
-        let ends =
-            self.memberships.iter().skip(1).map(|&(start, _)| start).chain([self.tags.len()]);
-        self.memberships
-            .iter()
-            .zip(ends)
-            .map(|(&(start, membership), end)| (start..end, membership))
+    /// Runs of consecutive elements in the same groups.
+    pub fn runs(&self) -> impl Iterator<Item = (Range<usize>, &[i64])> {
+        let ends = self.starts.iter().skip(1).map(|(start, _)| *start).chain([self.tags.len()]);
+        self.starts.iter().zip(ends).map(|((start, groups), end)| (*start..end, &groups[..]))
     }
 }
 
@@ -96,47 +48,52 @@ impl Simplices {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Contents {
     /// The bytes of the file.
-    pub(super) bytes: Vec<u8>,
-    /// Whether the file is binary.
-    pub(super) is_binary: bool,
+    pub bytes: Vec<u8>,
+    pub is_binary: bool,
+    /// Whether an element of several groups is listed once for each of them, as in MSH 2.2.
+    pub lists_by_group: bool,
     /// The names of the physical groups, by dimension and tag.
-    pub(super) groups: BTreeMap<(usize, i64), String>,
-    /// The groups of the entities, by dimension and tag of the entity.
-    pub(super) entities: HashMap<(usize, i64), Vec<i64>>,
-    pub(super) nodes: Nodes,
+    pub groups: BTreeMap<(usize, i64), String>,
+    pub nodes: Nodes,
     /// The simplices, by dimension.
-    pub(super) simplices: [Simplices; 4],
-    /// Whether the file has a section of periodic boundaries.
-    pub(super) is_periodic: bool,
+    pub simplices: [Simplices; 4],
 }
 
 impl Contents {
     /// The largest dimension of an element that is not a point.
-    pub(super) fn dimension(&self) -> Option<usize> {
+    pub fn dimension(&self) -> Option<usize> {
         (1..=3).rev().find(|&d| !self.simplices[d].tags.is_empty())
     }
-    /// The position of a byte.
-    pub(super) fn position(&self, offset: usize) -> FilePosition {
-        FilePosition::of(offset, &self.bytes, self.is_binary)
+    /// The place of a byte, for messages.
+    pub fn place(&self, offset: usize) -> String {
+        place(offset, &self.bytes, self.is_binary)
     }
     /// An error at a byte.
-    pub(super) fn error(&self, offset: usize, kind: GmshErrorKind, message: String) -> GmshError {
-        GmshError::new(kind, message).at(self.position(offset))
+    pub fn error(&self, offset: usize, kind: GmshErrorKind, message: &str) -> GmshError {
+        GmshError::new(kind, format!("{}: {message}", self.place(offset)))
     }
-    /// The names of all groups of an element; the number of a group without a name.
-    pub(super) fn names_of(&self, dimension: usize, membership: Membership) -> Vec<String> {
-        let tags = match &membership {
-            Membership::Entity(entity) => {
-                self.entities.get(&(dimension, *entity)).map(Vec::as_slice)
-            }
-            Membership::Group(0) => None,
-            Membership::Group(tag) => Some(std::slice::from_ref(tag)),
-        };
+    /// The names of groups of a dimension; the number of a group without a name.
+    pub fn names_of(&self, dimension: usize, groups: &[i64]) -> Vec<String> {
         let name = |&tag: &i64| match self.groups.get(&(dimension, tag)) {
             Some(name) => name.clone(),
             None => tag.to_string(),
         };
-        // an entity that the file does not list is in no group
-        tags.into_iter().flatten().map(name).collect()
+        groups.iter().map(name).collect()
+    }
+    /// The numbers of the nodes in the order of the file, by their tags.
+    pub fn node_numbers(&self) -> Result<HashMap<u64, u32>, GmshError> {
+        let Nodes { tags, offsets, .. } = &self.nodes;
+        let mut numbers = HashMap::with_capacity(tags.len());
+        // a file of at most 2 GiB has fewer nodes than there are numbers of 32 bits
+        for (number, tag) in (0..).zip(tags) {
+            if let Some(first) = numbers.insert(*tag, number) {
+                let message = format!(
+                    "node {tag} is given a second time (first: {}); tags of nodes must be distinct, renumber the mesh in Gmsh",
+                    self.place(offsets[first as usize])
+                );
+                return Err(self.error(offsets[number as usize], GmshErrorKind::Node, &message));
+            }
+        }
+        Ok(numbers)
     }
 }

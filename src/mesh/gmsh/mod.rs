@@ -1,4 +1,4 @@
-//! Reader of Gmsh meshes: MSH 4.1 and 2.2, text and binary. Writer: MSH 4.1, text.
+//! Reader of Gmsh meshes: MSH 4.1 and 2.2, text and binary.
 //!
 //! The cells of the mesh are the elements of the largest dimension in the file; the names of their
 //! physical groups make the regions of the mesh. The groups of its boundary are the elements of one
@@ -7,9 +7,8 @@
 //! without a name is called by its number. The names `dirichlet`, `neumann` and `contact` say which
 //! condition holds on their facets; for others the data of a problem do, see
 //! [`Problem::bind_boundary`](crate::problem::Problem::bind_boundary). Facets of groups that lie between two cells
-//! are left out. Elements of higher order are read as straight ones, with a [`GmshWarning`]. There are warnings too
-//! of facets of the boundary that lie on each other with different nodes, and of periodic boundaries, whose sides are
-//! not tied to each other.
+//! are left out. Elements of order two are read as straight ones, with a warning; another warning says which facets
+//! of the boundary lie on each other with different nodes. The sides of periodic boundaries are not tied to each other.
 //!
 //! Cells and vertices are numbered anew, along a Hilbert curve, because Gmsh's own numbers scatter neighbours
 //! over the memory: of two files that list the same elements in different orders the meshes are equal. Files of
@@ -62,18 +61,12 @@
 
 mod assemble;
 mod contents;
-mod element_types;
 mod error;
-mod node_index;
 mod sections;
 mod source;
-mod version_four;
-mod version_two;
-mod write;
 
 pub use assemble::GmshMesh;
-pub use error::{FilePosition, GmshError, GmshErrorKind, GmshWarning};
-pub use write::{to_text, write};
+pub use error::{GmshError, GmshErrorKind};
 
 use crate::input;
 use crate::instances::compiled;

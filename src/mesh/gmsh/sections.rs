@@ -1,52 +1,54 @@
-//! The header of a file and the sections that follow.
+//! The sections of a file.
+//!
+//! | | MSH 2.2 | MSH 4.1 |
+//! |---|---|---|
+//! | tags of nodes and elements | four bytes | eight bytes |
+//! | groups | one with each element | those of the entity of a block, in `$Entities` |
+//! | `$Nodes` | tag and point of each | blocks: all tags, then all points |
+//! | `$Elements` | with a header each; binary: one for those of one type | blocks with a header |
+
+use std::collections::HashMap;
 
 use super::contents::Contents;
 use super::error::{GmshError, GmshErrorKind};
-use super::source::{Source, integer, unsigned};
-use super::{version_four, version_two};
+use super::source::Source;
 use crate::input::excerpt;
 
-/// The revisions of the format that are read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Version {
-    Two,
-    Four,
-}
+/// The element types that are read: their numbers, dimensions and numbers of nodes, of which the corners come first.
+const TYPES: [(i64, usize, usize); 7] =
+    [(15, 0, 1), (1, 1, 2), (8, 1, 3), (2, 2, 3), (9, 2, 6), (4, 3, 4), (11, 3, 10)];
+
+/// The physical groups of the entities, by dimension and tag.
+type Entities = HashMap<(usize, i64), Vec<i64>>;
 
 /// Reads a file up to its end.
 pub(super) fn read_contents(bytes: Vec<u8>) -> Result<Contents, GmshError> {
-    let mut source = Source::new(&bytes);
-    let version = read_header(&mut source)?;
-    let mut contents = Contents { is_binary: source.is_binary(), ..Contents::default() };
-    let (mut has_nodes, mut has_elements) = (false, false);
-    while let Some(name) = open_section(&mut source)? {
-        match (name, version) {
-            (b"$PhysicalNames", _) => read_names(&mut source, &mut contents)?,
-            (b"$Entities", Version::Four) => {
-                version_four::read_entities(&mut source, &mut contents)?;
-            }
-            (b"$PartitionedEntities", Version::Four) => {
+    let source = &mut Source::new(&bytes);
+    read_header(source)?;
+    let (is_binary, lists_by_group) = (source.is_binary(), !source.is_four);
+    let mut contents = Contents { is_binary, lists_by_group, ..Contents::default() };
+    let (mut entities, mut has_nodes, mut has_elements) = (Entities::new(), false, false);
+    while let Some(name) = open_section(source)? {
+        match (name, source.is_four) {
+            (b"$PhysicalNames", _) => read_names(source, &mut contents)?,
+            (b"$Entities", true) => entities = read_entities(source)?,
+            (b"$PartitionedEntities", true) => {
                 let message = "the mesh is partitioned; save it unpartitioned (in Gmsh: Mesh > Delete > Partitions, or leave out `-part`)";
-                return Err(source.error(GmshErrorKind::Partitioned, message));
+                return Err(source.error(GmshErrorKind::Unsupported, message));
             }
-            (b"$Periodic", _) => {
-                contents.is_periodic = true;
-                source.skip_section()?;
-            }
-            (b"$Nodes", Version::Four) => {
+            (b"$Nodes", true) => {
                 has_nodes = true;
-                version_four::read_nodes(&mut source, &mut contents)?;
+                read_blocks_of_nodes(source, &mut contents)?;
             }
-            (b"$Nodes" | b"$ParametricNodes", Version::Two) => {
+            (b"$Nodes" | b"$ParametricNodes", false) => {
                 has_nodes = true;
-                let is_parametric = name == b"$ParametricNodes";
-                version_two::read_nodes(&mut source, &mut contents, is_parametric)?;
+                read_nodes(source, &mut contents, name == b"$ParametricNodes")?;
             }
-            (b"$Elements", version) => {
+            (b"$Elements", is_four) => {
                 has_elements = true;
-                match version {
-                    Version::Four => version_four::read_elements(&mut source, &mut contents)?,
-                    Version::Two => version_two::read_elements(&mut source, &mut contents)?,
+                match is_four {
+                    true => read_blocks_of_elements(source, &mut contents, &entities)?,
+                    false => read_elements(source, &mut contents)?,
                 }
             }
             _ => source.skip_section()?,
@@ -56,7 +58,7 @@ pub(super) fn read_contents(bytes: Vec<u8>) -> Result<Contents, GmshError> {
         if !present {
             let message =
                 format!("the file has no section {section}; save the mesh again from Gmsh");
-            return Err(GmshError::new(GmshErrorKind::MissingSection, message));
+            return Err(GmshError::new(GmshErrorKind::Damaged, message));
         }
     }
     Ok(Contents { bytes, ..contents })
@@ -68,104 +70,251 @@ fn open_section<'a>(source: &mut Source<'a>) -> Result<Option<&'a [u8]>, GmshErr
     if source.is_at_end() {
         return Ok(None);
     }
-    source.section = format!("after {}", source.section);
     let name = source.word();
     if name.len() < 2 || name[0] != b'$' || name.starts_with(b"$End") {
-        return Err(source.unexpected_word("the beginning of a section", name));
+        return Err(source.unexpected_word("the beginning of a section after its end", name));
     }
     source.section = String::from_utf8_lossy(name).into_owned();
     source.end_line()?;
-    source.rest_of_line();
     Ok(Some(name))
 }
 
 /// Reads `$MeshFormat`: version and encoding.
-fn read_header(source: &mut Source) -> Result<Version, GmshError> {
-    loop {
+fn read_header(source: &mut Source) -> Result<(), GmshError> {
+    source.skip_blank_lines();
+    let mut word = source.word();
+    while word == b"$Comments" {
+        source.section = "$Comments".into();
+        source.skip_section()?;
         source.skip_blank_lines();
-        let found = match source.word() {
-            b"$MeshFormat" => break,
-            // Comments may come first.
-            b"$Comments" => {
-                source.section = "$Comments".into();
-                source.skip_section()?;
-                continue;
-            }
-            b"$NOD" => return Err(unsupported_version(source, "1")),
-            b"" => "the end of the file".to_owned(),
-            word => format!("`{}`", excerpt(word)),
-        };
+        word = source.word();
+    }
+    if word != b"$MeshFormat" {
         let message = format!(
-            "not a Gmsh mesh: the file begins with {found} where `$MeshFormat` is expected; save the mesh from Gmsh as .msh"
+            "not a Gmsh mesh: the file begins with `{}` where `$MeshFormat` is expected; save the mesh from Gmsh as .msh",
+            excerpt(word)
         );
         return Err(GmshError::new(GmshErrorKind::NotGmsh, message));
     }
     source.section = "$MeshFormat".into();
     source.skip_blank_lines();
-    let version = match source.word() {
-        b"4.1" => Version::Four,
-        b"2.2" => Version::Two,
-        b"" => return Err(source.truncated()),
+    match source.word() {
+        b"4.1" => source.is_four = true,
+        b"2.2" => {}
         word => {
-            let is_number = std::str::from_utf8(word).is_ok_and(|text| text.parse::<f64>().is_ok());
-            return Err(match is_number {
-                true => unsupported_version(source, &excerpt(word)),
-                false => source.not_a_number("the version of the format", word),
-            });
+            let message = format!(
+                "MSH version `{}` is not read, only 4.1 and 2.2 are; save again from Gmsh with `-format msh41` or `-format msh22`",
+                excerpt(word)
+            );
+            return Err(source.error(GmshErrorKind::Unsupported, &message));
         }
-    };
-    let file_type = source.text("the file type, 0 for text or 1 for binary", integer)?;
-    let data_size = source.text("the size of numbers in bytes, 8", unsigned)?;
+    }
+    let file_type: u64 = source.text("the file type, 0 for text or 1 for binary")?;
+    let data_size: u64 = source.text("the size of numbers in bytes, 8")?;
     if data_size != 8 {
         let message = format!(
             "numbers of {data_size} bytes are not read, only of 8; save again from a 64-bit Gmsh"
         );
-        return Err(source.error(GmshErrorKind::UnsupportedDataSize, message));
+        return Err(source.error(GmshErrorKind::Unsupported, &message));
     }
     source.end_line()?;
     match file_type {
         0 => {}
-        1 => {
-            source.rest_of_line();
-            source.read_byte_order()?;
-        }
+        1 => source.read_byte_order()?,
         other => return Err(source.unexpected("file type 0 (text) or 1 (binary)", other)),
     }
-    source.end_section("lines", 1)?;
-    Ok(version)
-}
-
-fn unsupported_version(source: &Source, version: &str) -> GmshError {
-    let message = format!(
-        "MSH version {version} is not read, only 4.1 and 2.2 are; save again from Gmsh with `-format msh41` or `-format msh22`"
-    );
-    source.error(GmshErrorKind::UnsupportedVersion, message)
+    source.end_section()
 }
 
 /// Reads the names of the physical groups, which are text also in binary files.
 fn read_names(source: &mut Source, contents: &mut Contents) -> Result<(), GmshError> {
-    source.skip_blank_lines();
-    let announced = source.text("the number of physical names", unsigned)?;
-    source.end_line()?;
-    for found in 0..announced {
+    for _ in 0..source.line_of_count("the number of physical names")? {
         source.skip_blank_lines();
         let dimension = match source.word() {
-            b"" => return Err(source.truncated()),
-            word @ [b'$', ..] if word.starts_with(b"$End") => {
-                return Err(source.miscounted("physical names", announced, found));
-            }
             [digit @ b'0'..=b'3'] => usize::from(digit - b'0'),
             word => {
                 let expected = "the dimension of a physical group, 0 to 3";
                 return Err(source.unexpected_word(expected, word));
             }
         };
-        let tag = source.text("the tag of a physical group", integer)?;
+        let tag = source.text("the tag of a physical group")?;
         let line = source.rest_of_line().trim_ascii();
         let name = line.strip_prefix(b"\"").and_then(|rest| rest.strip_suffix(b"\""));
         let name = name.ok_or_else(|| source.unexpected_word("a name in double quotes", line))?;
-        let name = String::from_utf8_lossy(name).into_owned();
-        contents.groups.insert((dimension, tag), name);
+        contents.groups.insert((dimension, tag), String::from_utf8_lossy(name).into_owned());
     }
-    source.end_section("physical names", announced)
+    source.end_section()
+}
+
+/// Reads which physical groups the entities belong to; the rest of `$Entities` is geometry.
+fn read_entities(source: &mut Source) -> Result<Entities, GmshError> {
+    source.record("the numbers of entities")?;
+    let mut entities = Entities::new();
+    let mut counts = [0; 4];
+    for count in &mut counts {
+        *count = source.count("the number of entities of a dimension")?;
+    }
+    for (dimension, count) in counts.into_iter().enumerate() {
+        for _ in 0..count {
+            source.record("an entity")?;
+            let entity = source.integer("the tag of an entity")?;
+            // a point has coordinates, every other entity a box and a list of bounding entities
+            source.skip(if dimension == 0 { 3 } else { 6 }, 8, "a coordinate of an entity")?;
+            let mut groups = Vec::new();
+            for _ in 0..source.count("the number of physical groups of an entity")? {
+                // the sign is an orientation
+                groups.push(source.integer("the tag of a physical group")?.abs());
+            }
+            if dimension > 0 {
+                let bounding = source.count("the number of bounding entities")?;
+                source.skip(bounding, 4, "the tag of a bounding entity")?;
+            }
+            entities.insert((dimension, entity), groups);
+        }
+    }
+    source.end_section()?;
+    Ok(entities)
+}
+
+/// The number of blocks at the beginning of a section of MSH 4.1.
+fn read_number_of_blocks(source: &mut Source) -> Result<u64, GmshError> {
+    source.record("the number of blocks")?;
+    let blocks = source.count("the number of blocks")?;
+    source.skip(3, 8, "the number of records and the range of their tags")?;
+    Ok(blocks)
+}
+
+fn read_dimension(source: &mut Source) -> Result<usize, GmshError> {
+    let expected = "the dimension of an entity, 0 to 3";
+    match source.integer(expected)? {
+        dimension @ 0..=3 => Ok(dimension as usize),
+        other => Err(source.unexpected(expected, other)),
+    }
+}
+
+fn read_blocks_of_nodes(source: &mut Source, contents: &mut Contents) -> Result<(), GmshError> {
+    for _ in 0..read_number_of_blocks(source)? {
+        source.record("a block of nodes")?;
+        let dimension = read_dimension(source)?;
+        source.integer("the tag of an entity")?;
+        let is_parametric = source.integer("0 or 1 for parametric coordinates")? != 0;
+        let parameters = if is_parametric { dimension as u64 } else { 0 };
+        let first = contents.nodes.tags.len();
+        for _ in 0..source.count("the number of nodes of a block")? {
+            source.record("the tag of a node")?;
+            contents.nodes.tags.push(source.tag("the tag of a node")?);
+        }
+        for k in first..contents.nodes.tags.len() {
+            source.record("the coordinates of a node")?;
+            contents.nodes.offsets.push(source.offset());
+            contents.nodes.points.push(source.point(contents.nodes.tags[k])?);
+            source.skip(parameters, 8, "a parametric coordinate")?;
+        }
+    }
+    source.end_section()
+}
+
+/// Reads the nodes of MSH 2.2, which may each have a geometric entity and their coordinates on it.
+fn read_nodes(
+    source: &mut Source,
+    contents: &mut Contents,
+    is_parametric: bool,
+) -> Result<(), GmshError> {
+    for _ in 0..source.line_of_count("the number of nodes")? {
+        source.record("a node")?;
+        contents.nodes.offsets.push(source.offset());
+        let node = source.tag("the tag of a node")?;
+        contents.nodes.tags.push(node);
+        contents.nodes.points.push(source.point(node)?);
+        if is_parametric {
+            let dimension = read_dimension(source)?;
+            source.integer("the tag of an entity")?;
+            // in a volume the coordinates are those of space
+            let parameters = if dimension < 3 { dimension as u64 } else { 0 };
+            source.skip(parameters, 8, "a parametric coordinate")?;
+        }
+    }
+    source.end_section()
+}
+
+fn read_blocks_of_elements(
+    source: &mut Source,
+    contents: &mut Contents,
+    entities: &Entities,
+) -> Result<(), GmshError> {
+    for _ in 0..read_number_of_blocks(source)? {
+        source.record("a block of elements")?;
+        let dimension = read_dimension(source)?;
+        let entity = source.integer("the tag of an entity")?;
+        let of_type = read_type(source)?;
+        // an entity that the file does not list is in no group
+        let groups = entities.get(&(dimension, entity)).map_or(&[][..], Vec::as_slice);
+        for _ in 0..source.count("the number of elements of a block")? {
+            source.record("an element")?;
+            let element = (source.offset(), source.tag("the tag of an element")?);
+            read_element(source, contents, (of_type, element), groups)?;
+        }
+    }
+    source.end_section()
+}
+
+/// Reads the elements of MSH 2.2. The tag of an element stands before its header in text, after that of all of one type
+/// in binary files.
+fn read_elements(source: &mut Source, contents: &mut Contents) -> Result<(), GmshError> {
+    let announced = source.line_of_count("the number of elements")?;
+    let mut found = 0_u64;
+    while found < announced {
+        source.record("an element")?;
+        let read_tag = |source: &mut Source| {
+            Ok::<_, GmshError>((source.offset(), source.tag("the tag of an element")?))
+        };
+        let first = if source.is_binary() { None } else { Some(read_tag(source)?) };
+        let of_type = read_type(source)?;
+        let count = match first {
+            Some(_) => 1,
+            None => source.tag("the number of elements of one type")?,
+        };
+        let tags = source.tag("the number of tags of an element")?;
+        for _ in 0..count {
+            let element = first.map_or_else(|| read_tag(source), Ok)?;
+            // the first tag is the physical group, zero for none; the others tell the entity and the partitions
+            let group =
+                if tags > 0 { source.integer("the tag of a physical group")?.abs() } else { 0 };
+            source.skip(tags.saturating_sub(1), 4, "a tag of an element")?;
+            let groups = if group == 0 { &[][..] } else { &[group] };
+            read_element(source, contents, (of_type, element), groups)?;
+        }
+        found = found.saturating_add(count);
+    }
+    source.end_section()
+}
+
+/// Reads the number of an element type; returns its dimension and number of nodes.
+fn read_type(source: &mut Source) -> Result<(usize, usize), GmshError> {
+    let number = source.integer("the type of an element")?;
+    let found = TYPES.iter().find(|(known, ..)| *known == number);
+    found.map(|(_, dimension, nodes)| (*dimension, *nodes)).ok_or_else(|| {
+        let message = format!(
+            "elements of type {number} are not read, only points, lines, triangles and tetrahedra of order one and two; mesh again with `Mesh.ElementOrder = 1` and without `Recombine`, `Mesh.RecombineAll` and `Mesh.SubdivisionAlgorithm`"
+        );
+        source.error(GmshErrorKind::Unsupported, &message)
+    })
+}
+
+/// Reads the nodes of an element, whose offset and tag are known.
+fn read_element(
+    source: &mut Source,
+    contents: &mut Contents,
+    ((dimension, nodes), element): ((usize, usize), (usize, u64)),
+    groups: &[i64],
+) -> Result<(), GmshError> {
+    let simplices = &mut contents.simplices[dimension];
+    for _ in 0..=dimension {
+        simplices.corners.push(source.tag("the tag of a node")?);
+    }
+    let others = nodes - dimension - 1;
+    source.skip_tags(others)?;
+    simplices.curved += usize::from(others > 0);
+    simplices.push(element, groups);
+    Ok(())
 }

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use super::check::{Allowed, Entry};
 use crate::problem::{BoundaryFlux, Tensor};
 use crate::problem_file::error::ProblemFileError;
 use crate::problem_file::expression::VARIABLES;
-use crate::problem_file::table::{Formula, Source, Value};
+use crate::problem_file::formula::Formula;
+use crate::problem_file::table::{Source, Value};
 use crate::real::{Matrix, Point};
 
 /// The least pivot of Gaussian elimination up to the first that is not positive: a symmetric matrix is positive definite
@@ -26,19 +26,21 @@ fn least_pivot<const D: usize>(mut of: Matrix<D>) -> f64 {
     least
 }
 
-/// Reads the tensor of a region, `[[2, 0], [0, 1]]`, with what is to be checked: that it is positive definite.
+/// Reads the tensor of a region, `[[2, 0], [0, 1]]`, with its least pivot, which must be positive.
 pub(super) fn read<'t, const D: usize>(
     source: &Source<'t>,
-    ((group, region), offset, value): ((&str, Option<&str>), usize, &Value<'t>),
-    others: &[String],
-) -> Result<(Tensor<D>, Entry<D>), ProblemFileError> {
+    group: &str,
+    value: &Value<'t>,
+) -> Result<(Tensor<D>, BoundaryFlux<D>), ProblemFileError> {
     let expected = "a symmetric list of rows, each with an entry for each coordinate";
     let wrong = || source.wrong_type(group, value, expected);
-    let list =
-        |value: &Value<'t>| Some(value.get_ref().as_array().filter(|l| l.len() == D)?.clone());
+    let list = |value: &Value<'t>| {
+        let list = value.get_ref().as_array().filter(|list| list.len() == D);
+        list.cloned().ok_or_else(wrong)
+    };
     let (mut formulas, mut texts) = (Vec::new(), Vec::new());
-    for row in list(value).ok_or_else(wrong)?.iter() {
-        for entry in list(row).ok_or_else(wrong)?.iter() {
+    for row in list(value)?.iter() {
+        for entry in list(row)?.iter() {
             formulas.push(source.formula(group, entry, &VARIABLES[0][..D])?);
             texts.push(source.text[entry.span()].replace(' ', ""));
         }
@@ -58,15 +60,5 @@ pub(super) fn read<'t, const D: usize>(
         false => Tensor::function(at),
     };
     let of = tensor.clone();
-    let entry = Entry {
-        datum: format!("the least pivot of coefficient.{group}"),
-        group: region.map(str::to_owned),
-        is_boundary: false,
-        others: others.to_vec(),
-        at_vertices: false,
-        offset,
-        allowed: Allowed::Definite,
-        value: BoundaryFlux::Function(Arc::new(move |x, _| least_pivot(of.at(x)))),
-    };
-    Ok((tensor, entry))
+    Ok((tensor, BoundaryFlux::Function(Arc::new(move |x, _| least_pivot(of.at(x))))))
 }

@@ -1,29 +1,34 @@
 //! The grammar: precedence of operators, numbers, names and calls.
 
 use winnow::ascii::multispace0;
-use winnow::combinator::{
-    Infix, Prefix, alt, cut_err, delimited, expression, opt, preceded, separated,
-};
+use winnow::combinator::{Infix, Prefix, alt, cut_err, delimited, expression, opt, separated};
 use winnow::error::{ModalError, ParserError};
 use winnow::prelude::*;
+use winnow::stream::{Stateful, Stream};
 use winnow::token::{literal, one_of, take_while};
 
 use super::functions::truth;
+use super::names::{Names, call};
 use super::node::{Node, Operator};
+
+/// What is left of an expression, and the names that it may use.
+pub(super) type Input<'i, 'n> = Stateful<&'i str, Names<'n>>;
 
 /// An error of the parser.
 #[derive(Debug)]
 pub(super) struct Left {
     /// The number of bytes that were left.
     pub bytes: usize,
+    /// What is wrong, where it is more than something unexpected.
+    pub message: Option<String>,
     /// Whether no other branch can read them.
     is_final: bool,
 }
 
-impl<'i> ParserError<&'i str> for Left {
+impl<'i, 'n> ParserError<Input<'i, 'n>> for Left {
     type Inner = Self;
-    fn from_input(input: &&'i str) -> Self {
-        Left { bytes: input.len(), is_final: false }
+    fn from_input(input: &Input<'i, 'n>) -> Self {
+        Left { bytes: input.eof_offset(), message: None, is_final: false }
     }
     fn is_backtrack(&self) -> bool {
         !self.is_final
@@ -59,7 +64,7 @@ macro_rules! arithmetic {
 }
 
 /// An expression of any precedence, and the white space after it.
-pub(super) fn sum(input: &mut &str) -> Parsed<Node> {
+pub(super) fn sum(input: &mut Input<'_, '_>) -> Parsed<Node> {
     let sign = alt((
         ('-', multispace0).value(Prefix(9, |_: &mut _, a| Ok(Node::Negative(Box::new(a))))),
         ('+', multispace0).value(Prefix(9, |_: &mut _, a| Ok(a))),
@@ -88,12 +93,12 @@ pub(super) fn sum(input: &mut &str) -> Parsed<Node> {
     expression(operand).prefix(sign).infix(alt((logic, arithmetic))).parse_next(input)
 }
 
-fn operand(input: &mut &str) -> Parsed<Node> {
+fn operand(input: &mut Input<'_, '_>) -> Parsed<Node> {
     let parentheses = delimited(('(', multispace0), cut_err(sum), cut_err(')'));
     (alt((number, call_or_name, parentheses)), multispace0).map(|(node, _)| node).parse_next(input)
 }
 
-fn number(input: &mut &str) -> Parsed<Node> {
+fn number(input: &mut Input<'_, '_>) -> Parsed<Node> {
     let digits = |c: char| c.is_ascii_digit();
     let mantissa = alt((
         (take_while(1.., digits), opt(('.', take_while(0.., digits)))).take(),
@@ -104,16 +109,17 @@ fn number(input: &mut &str) -> Parsed<Node> {
 }
 
 /// A name, with the arguments of a function where a parenthesis follows.
-fn call_or_name(input: &mut &str) -> Parsed<Node> {
+fn call_or_name(input: &mut Input<'_, '_>) -> Parsed<Node> {
     let is_first = |c: char| c.is_ascii_alphabetic() || c == '_';
     let is_other = |c: char| c.is_ascii_alphanumeric() || c == '_';
-    let start = input.len();
-    let name = (one_of(is_first), take_while(0.., is_other)).take().parse_next(input)?.to_owned();
-    if preceded(multispace0::<&str, Left>, '(').parse_next(&mut &**input).is_err() {
-        return Ok(Node::Name(name, start));
+    let bytes = input.eof_offset();
+    let name: &str = (one_of(is_first), take_while(0.., is_other)).take().parse_next(input)?;
+    let wrong = |message| Left { bytes, message: Some(message), is_final: true };
+    if !input.input.trim_ascii_start().starts_with('(') {
+        return input.state.node(name).map_err(wrong);
     }
-    let comma = (',', multispace0);
-    let list = separated(0.., sum, comma);
-    let arguments = delimited((multispace0, '(', multispace0), list, cut_err(')'));
-    arguments.map(|arguments| Node::Call(name.clone(), start, arguments)).parse_next(input)
+    let list = separated(0.., sum, (',', multispace0));
+    let arguments: Vec<Node> =
+        delimited((multispace0, '(', multispace0), list, cut_err(')')).parse_next(input)?;
+    call(name, arguments).map_err(wrong)
 }

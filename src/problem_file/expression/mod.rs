@@ -15,12 +15,13 @@ mod node;
 
 use winnow::ascii::multispace0;
 use winnow::combinator::preceded;
+use winnow::error::ParserError;
 use winnow::prelude::*;
 
 use crate::real::Point;
-use grammar::{Left, sum};
+use grammar::{Input, Left, sum};
+use names::SyntaxError;
 pub(super) use names::{Names, VARIABLES, use_of_name};
-use names::{SyntaxError, resolve};
 use node::Node;
 
 /// Longest expression, in characters, and deepest nesting of parentheses, powers and signs: the parser
@@ -42,26 +43,25 @@ impl Expression {
         if nesting(text) > DEEPEST {
             return Err(at(0, format!("parentheses and powers are nested {DEEPEST} deep at most")));
         }
-        let mut rest = text;
-        let node = preceded(multispace0, sum).parse_next(&mut rest);
-        let offset = match &node {
-            Ok(_) if rest.is_empty() => text.len(),
+        let mut rest = Input { input: text, state: names };
+        let left = match preceded(multispace0, sum).parse_next(&mut rest) {
+            Ok(node) if rest.is_empty() => return Ok(Self(node)),
             // where the last complete operand ends
-            Ok(_) => text.len() - rest.len(),
-            Err(Left { bytes, .. }) => text.len() - bytes,
+            Ok(_) => Left::from_input(&rest),
+            Err(left) => left,
         };
-        match node {
-            Ok(node) if rest.is_empty() => Ok(Self(resolve(node, text.len(), names)?)),
-            _ if offset == text.len() => Err(at(
-                offset,
-                "the expression ends where a number, a name or a parenthesis is expected"
+        let offset = text.len() - left.bytes;
+        Err(at(
+            offset,
+            left.message.unwrap_or_else(|| match &text[offset..] {
+                "" => "the expression ends where a number, a name or a parenthesis is expected"
                     .to_owned(),
-            )),
-            _ => {
-                let found: String = text[offset..].chars().take(12).collect();
-                Err(at(offset, format!("`{found}` is not expected here")))
-            }
-        }
+                rest => {
+                    let found: String = rest.chars().take(12).collect();
+                    format!("`{found}` is not expected here")
+                }
+            }),
+        ))
     }
 
     /// The value for values of the variables.

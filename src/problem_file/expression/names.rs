@@ -11,7 +11,7 @@ pub(crate) struct SyntaxError {
 }
 
 /// What names in an expression may mean, besides functions and the constants of all expressions.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Names<'n> {
     pub variables: &'n [&'n str],
     /// The constants of the file.
@@ -42,57 +42,30 @@ pub(crate) fn use_of_name(name: &str) -> Option<&'static str> {
     }
 }
 
-/// Gives names their meaning.
-pub(super) fn resolve(node: Node, length: usize, names: Names<'_>) -> Result<Node, SyntaxError> {
-    let of = |node| resolve(node, length, names);
-    Ok(match node {
-        Node::Negative(a) => Node::Negative(Box::new(of(*a)?)),
-        Node::Arithmetic(operator, ab) => {
-            let (a, b) = *ab;
-            Node::arithmetic(operator, of(a)?, of(b)?)
+impl Names<'_> {
+    /// The meaning of a name.
+    pub(super) fn node(&self, name: &str) -> Result<Node, String> {
+        if let Some(k) = self.variables.iter().position(|variable| *variable == name) {
+            return Ok(Node::Variable(k));
         }
-        Node::One(f, a) => Node::One(f, Box::new(of(*a)?)),
-        Node::Two(f, ab) => {
-            let (a, b) = *ab;
-            Node::two(f, of(a)?, of(b)?)
-        }
-        Node::If(three) => {
-            let (condition, yes, no) = *three;
-            Node::If(Box::new((of(condition)?, of(yes)?, of(no)?)))
-        }
-        Node::Name(name, left) => {
-            let Names { variables, constants, below } = names;
-            if let Some(k) = variables.iter().position(|variable| *variable == name) {
-                return Ok(Node::Variable(k));
+        let own = self.constants.iter().map(|(name, value)| (&name[..], *value));
+        let mut numbers = CONSTANTS.into_iter().chain(own);
+        let known = self.variables.iter().copied().chain(numbers.clone().map(|(name, _)| name));
+        match numbers.find(|(constant, _)| *constant == name) {
+            Some((_, value)) => Ok(Node::Number(value)),
+            None if self.below.iter().any(|other| other == name) => {
+                Err(format!("`{name}` is not known here: a constant uses those above it"))
             }
-            let own = constants.iter().map(|(name, value)| (&name[..], *value));
-            let numbers = || CONSTANTS.into_iter().chain(own.clone());
-            match numbers().find(|(constant, _)| *constant == name) {
-                Some((_, value)) => Node::Number(value),
-                None => {
-                    let known = variables.iter().copied().chain(numbers().map(|(name, _)| name));
-                    let known: Vec<&str> = known.collect();
-                    let message = match below.contains(&name) {
-                        true => {
-                            format!("`{name}` is not known here: a constant uses those above it")
-                        }
-                        false => format!("there is no `{name}`; there are {}", known.join(", ")),
-                    };
-                    return Err(SyntaxError { offset: length - left, message });
-                }
+            None => {
+                let known: Vec<&str> = known.collect();
+                Err(format!("there is no `{name}`; there are {}", known.join(", ")))
             }
         }
-        Node::Call(name, left, arguments) => {
-            let arguments = arguments.into_iter().map(of).collect::<Result<Vec<_>, _>>()?;
-            call(&name, arguments)
-                .map_err(|message| SyntaxError { offset: length - left, message })?
-        }
-        other => other,
-    })
+    }
 }
 
 /// A function with its arguments.
-fn call(name: &str, arguments: Vec<Node>) -> Result<Node, String> {
+pub(super) fn call(name: &str, arguments: Vec<Node>) -> Result<Node, String> {
     let n = arguments.len();
     let wrong_number = |expected: &str| Err(format!("{name} takes {expected}, not {n}"));
     let mut arguments = arguments.into_iter();

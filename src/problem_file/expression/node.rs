@@ -14,10 +14,6 @@ pub(super) enum Node {
     Two(Two, Box<(Node, Node)>),
     /// Condition, value if it is not zero, value if it is.
     If(Box<(Node, Node, Node)>),
-    /// A name that has no meaning yet: where it ends, counted from the end of the text.
-    Name(String, usize),
-    /// A function with its arguments, before it is looked up.
-    Call(String, usize, Vec<Node>),
 }
 
 /// An operation that makes polynomials of polynomials.
@@ -71,7 +67,6 @@ impl Node {
         match self {
             Node::Number(_) => false,
             Node::Variable(k) => *k >= first,
-            Node::Name(..) | Node::Call(..) => true,
             Node::One(_, a) | Node::Negative(a) => has(a),
             Node::Two(_, ab) | Node::Arithmetic(_, ab) => has(&ab.0) || has(&ab.1),
             Node::If(three) => has(&three.0) || has(&three.1) || has(&three.2),
@@ -128,8 +123,6 @@ impl Node {
                     _ => at(yes),
                 }
             }
-            // names are resolved when an expression is read
-            Node::Name(..) | Node::Call(..) => f64::NAN,
         }
     }
 }

@@ -173,7 +173,7 @@ fn squared_gradient<const D: usize>(
         match k {
             0 => exact = exact.with_contact(level, Vec::new()),
             1 => problem = problem.piecewise_source(|_| 0.0, level),
-            2 => problem = problem.piecewise_coefficient(|_| 1.0, level),
+            2 => problem = problem.coefficient_in("default", Datum::piecewise(|_| 1.0, level)),
             _ => problem = problem.reaction(Datum::piecewise(|_| 0.0, level)),
         }
     }

@@ -277,7 +277,7 @@ fn every_method<const D: usize, E: Element<D> + Copy + 'static>(element: E, n: u
     for lifts in [Lifts::Reduced, Lifts::Full] {
         let br2 = Br2 { factor: 4.5 / (D + 1) as f64, lifts }.on(element);
         check(Method::Br2(4.5), (&br2, lifts), n, &mean);
-        let bmmpr = Bmmpr { eta: 0.7, lifts }.on(element);
+        let bmmpr = Bmmpr { factor: 0.7, lifts }.on(element);
         check(Method::Bmmpr(0.7), (&bmmpr, lifts), n, &mean);
         let ldg = Ldg { eta: 1.3, switch: false, lifts }.on(element);
         check(Method::Ldg(1.3), (&ldg, lifts), n, &mean);
@@ -328,7 +328,7 @@ fn cells_that_are_all_neighbours_of_each_other() {
         let mesh = cut_at_barycentre::<D>();
         let mean = |_: &Point<D>| 0.5;
         for lifts in [Lifts::Reduced, Lifts::Full] {
-            let bmmpr = Bmmpr { eta: 0.7, lifts };
+            let bmmpr = Bmmpr { factor: 0.7, lifts };
             check_on(&mesh, Method::Bmmpr(0.7), (&bmmpr, lifts), &mean);
             check_on(&mesh, Method::Bmmpr(0.7), (&bmmpr.on(P2), lifts), &mean);
         }

@@ -22,7 +22,7 @@ fn with_factor<const D: usize>(x: f64) -> Schemes<D> {
         ("sigma", Box::new(Nipg { penalty: diameter }.on(P2))),
         ("sigma", Box::new(Ldg { eta: x, ..Ldg::default() })),
         ("eta", Box::new(Br2 { factor: x / (D + 1) as f64, ..Br2::default() })),
-        ("eta", Box::new(Bmmpr { eta: x, ..Bmmpr::default() }.on(P2))),
+        ("eta", Box::new(Bmmpr { factor: x, ..Bmmpr::default() }.on(P2))),
         ("eta", Box::new(over(Eta::Absolute(x)))),
         ("eta", Box::new(over(Eta::Dimensionless(x)))),
         ("eta", Box::new(over(Eta::Absolute(x)).on(P2))),

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use unilateral::mesh::Mesh;
 use unilateral::mesh::gmsh;
-use unilateral::mesh::gmsh::{GmshFile, GmshWarning};
+use unilateral::mesh::gmsh::GmshFile;
 
 /// The folder of meshes.
 fn folder() -> PathBuf {
@@ -28,8 +28,7 @@ fn check<const D: usize>(name: &str, bytes: &[u8]) {
     let curved = name.contains("quadratic");
     assert_eq!(!read.warnings.is_empty(), curved, "{name}");
     for warning in &read.warnings {
-        assert!(matches!(warning, GmshWarning::Straightened(_)), "{name}: {warning}");
-        assert!(warning.to_string().contains(" of order 2 "), "{name}: {warning}");
+        assert!(warning.contains(" elements of order two are read"), "{name}: {warning}");
     }
     eprintln!(
         "{name}: {} cells, volume {}, conditions {:?}",

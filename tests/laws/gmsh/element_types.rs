@@ -13,43 +13,14 @@ fn read(element_type: i64, nodes: usize) -> Result<GmshFile, GmshError> {
 
 #[test]
 fn nodes_of_the_types_in_the_manual() {
-    let table = [
-        (1, 2),
-        (2, 3),
-        (4, 4),
-        (8, 3),
-        (9, 6),
-        (11, 10),
-        (15, 1),
-        (20, 9),
-        (21, 10),
-        (22, 12),
-        (23, 15),
-        (24, 15),
-        (25, 21),
-        (26, 4),
-        (27, 5),
-        (28, 6),
-        (29, 20),
-        (30, 35),
-        (31, 56),
-        (32, 22),
-        (33, 28),
-        (46, 66),
-        (56, 30),
-        (66, 11),
-        (75, 286),
-        (79, 34),
-        (83, 58),
-        (137, 16),
-    ];
+    let table = [(1, 2), (2, 3), (4, 4), (8, 3), (9, 6), (11, 10), (15, 1)];
     for (element_type, nodes) in table {
         // of one node more or less the line is too long or too short
         let is_read = [nodes - 1, nodes, nodes + 1].map(|n| read(element_type, n).is_ok());
         assert_eq!(is_read, [false, true, false], "type {element_type}");
     }
-    for element_type in [-1, 0, 34, 35, 67, 84, 140, 1 << 40] {
+    for element_type in [-1, 0, 3, 21, 29, 140, 1 << 40] {
         let error = read(element_type, 4).unwrap_err();
-        assert_eq!(error.kind, GmshErrorKind::UnknownElementType, "type {element_type}");
+        assert_eq!(error.kind, GmshErrorKind::Unsupported, "type {element_type}");
     }
 }

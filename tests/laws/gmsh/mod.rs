@@ -11,4 +11,3 @@ mod mesh_errors;
 mod order;
 mod structure_errors;
 mod writer;
-mod written;
