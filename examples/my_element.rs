@@ -68,7 +68,7 @@ impl<const D: usize> Scheme<D> for WithBubble {
     /// nothing is claimed here.
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
         match setting.is_linear() && setting.regular_dual {
-            true => ExpectedOrders::default().with_l2(2.0).with_h1(1.0),
+            true => ExpectedOrders { l2: Some(2.0), h1: Some(1.0) },
             false => ExpectedOrders::default(),
         }
     }

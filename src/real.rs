@@ -18,10 +18,7 @@ impl Precision {
 
     /// The name users type and reports state.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Double => "f64",
-            Self::Single => "f32",
-        }
+        Self::NAMES[self as usize].0
     }
     /// The precision of a name that users type.
     pub fn by_name(name: &str) -> Option<Self> {

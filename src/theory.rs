@@ -3,25 +3,11 @@
 /// Orders that theory promises.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
 pub struct ExpectedOrders {
     /// In L2.
     pub l2: Option<f64>,
     /// In the broken H1 seminorm.
     pub h1: Option<f64>,
-}
-
-impl ExpectedOrders {
-    /// Promises an order in L2.
-    #[must_use]
-    pub const fn with_l2(self, order: f64) -> Self {
-        Self { l2: Some(order), ..self }
-    }
-    /// Promises an order in the broken H1 seminorm.
-    #[must_use]
-    pub const fn with_h1(self, order: f64) -> Self {
-        Self { h1: Some(order), ..self }
-    }
 }
 
 /// Regularity of the exact solution and of the coefficient, from which theory predicts orders.
@@ -64,7 +50,6 @@ impl Regularity {
 
 /// The conditions of a promise of orders.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Setting {
     /// Dimension of space.
     pub dimension: usize,
@@ -97,26 +82,6 @@ impl Setting {
             coefficient: false,
             regular_dual: false,
         }
-    }
-    /// Sets whether an obstacle binds in the domain.
-    #[must_use]
-    pub const fn with_obstacle(self, obstacle: bool) -> Self {
-        Self { obstacle, ..self }
-    }
-    /// Sets whether a Signorini condition binds on the boundary.
-    #[must_use]
-    pub const fn with_contact(self, contact: bool) -> Self {
-        Self { contact, ..self }
-    }
-    /// Sets whether the problem has a coefficient that is a function of space.
-    #[must_use]
-    pub const fn with_coefficient(self, coefficient: bool) -> Self {
-        Self { coefficient, ..self }
-    }
-    /// Sets whether the dual of the linear problem has solutions in `H^2`.
-    #[must_use]
-    pub const fn with_regular_dual(self, regular_dual: bool) -> Self {
-        Self { regular_dual, ..self }
     }
     /// Whether no inequality binds.
     pub fn is_linear(&self) -> bool {

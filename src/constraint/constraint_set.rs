@@ -8,12 +8,10 @@ use crate::theory::Setting;
 /// By what an unknown is bound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoundBy {
-    /// By the datum at the point of the node; the point of a mean is the barycentre,
-    /// that of a sum is its [`centre`](Node::centre).
+    /// By the datum at the [point](Node::centre) of the node; that of a mean is the barycentre.
     Value,
-    /// By the functional of the node, applied to the datum: the mean over the facet or cell, the sum
-    /// of values at points times weights, the Bernstein coefficient, at a node that is a point the value
-    /// there.
+    /// By the functional of the node, applied to the datum: the mean over the facet, the Bernstein coefficient, at a
+    /// node that is a point the value there.
     Functional,
 }
 

@@ -30,12 +30,13 @@ impl Entity {
     }
 }
 
-/// The functional that an unknown is the value of: a weighted sum of point values, tied to a vertex, an edge, a
-/// facet or the cell. Points are barycentric; entries beyond the dimension are zero.
+/// The functional that an unknown is the value of: the value at a point, the mean over a facet or a coefficient of
+/// Bernstein, tied to a vertex, an edge, a facet or the cell. Points are barycentric; entries beyond the dimension are
+/// zero.
 ///
 /// The literature calls it degree of freedom or *nodal variable* (S. C. Brenner, L. R. Scott, The mathematical
 /// theory of finite element methods, 3.1.1), and the basis dual to it the nodal basis. Here it is a node, be it a
-/// value at a point, a mean or a sum, and its number in the vector of values an unknown.
+/// value at a point, a mean or a coefficient, and its number in the vector of values an unknown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Node {
     entity: Entity,
@@ -46,10 +47,8 @@ pub struct Node {
 enum Functional {
     /// The value at a point.
     Value([f64; 4]),
-    /// The mean over the facet opposite this vertex.
-    FacetMean(usize),
-    /// A sum of values at points times weights.
-    Sum(Vec<([f64; 4], f64)>),
+    /// The mean over the facet.
+    FacetMean,
     /// The coefficient of a vertex or an edge in the basis of Bernstein.
     Coefficient,
 }
@@ -89,7 +88,7 @@ impl Node {
     }
     /// The mean over the facet opposite a vertex of the cell.
     pub fn facet_mean(k: usize) -> Self {
-        Self { entity: Entity::Facet(k), functional: Functional::FacetMean(k) }
+        Self { entity: Entity::Facet(k), functional: Functional::FacetMean }
     }
     /// The Bernstein coefficient of a quadratic at a vertex of the cell, which is the value there.
     pub fn coefficient_of_vertex(k: usize) -> Self {
@@ -103,10 +102,6 @@ impl Node {
     /// The value at a point of an entity.
     pub fn value(entity: Entity, point: [f64; 4]) -> Self {
         Self { entity, functional: Functional::Value(point) }
-    }
-    /// The sum of values at points of an entity times weights.
-    pub fn weighted_sum(entity: Entity, terms: Vec<([f64; 4], f64)>) -> Self {
-        Self { entity, functional: Functional::Sum(terms) }
     }
     /// The entity to which the functional is tied; its functionals of a function are known from the
     /// function on the entity.
@@ -127,7 +122,7 @@ impl Node {
     }
     /// Whether the functional is the mean over a facet.
     pub fn is_facet_mean(&self) -> bool {
-        matches!(self.functional, Functional::FacetMean(_))
+        self.functional == Functional::FacetMean
     }
     /// Whether the functional is a Bernstein coefficient.
     pub fn is_coefficient(&self) -> bool {
@@ -138,37 +133,26 @@ impl Node {
     pub fn terms(&self, facet_rule: &Rule) -> Vec<([f64; 4], f64)> {
         match (&self.functional, self.entity) {
             (Functional::Value(point), _) => vec![(*point, 1.0)],
-            (Functional::Sum(terms), _) => terms.clone(),
             (Functional::Coefficient, Entity::Edge(k)) => {
                 let ends = edge_vertices(3)[k].map(|v| (vertex_point(v), -0.5));
                 // in this order rounding leaves a constant as it is
                 vec![ends[0], ends[1], (self.centre(3), 2.0)]
             }
-            (Functional::Coefficient, _) => vec![(self.centre(3), 1.0)],
-            (Functional::FacetMean(k), _) => {
-                facet_rule.iter().map(|(point, w)| (facet_to_cell(point, *k), w)).collect()
+            (Functional::FacetMean, Entity::Facet(k)) => {
+                facet_rule.iter().map(|(point, w)| (facet_to_cell(point, k), w)).collect()
             }
+            _ => vec![(self.centre(3), 1.0)],
         }
     }
     /// The point that stands for the node: where it is the value at a point that point, of a mean and of a
-    /// Bernstein coefficient the barycentre, of a sum the mean of its points with the weights' magnitudes.
+    /// Bernstein coefficient the barycentre.
     pub fn centre(&self, dimension: usize) -> [f64; 4] {
-        let mean = |terms: &mut dyn Iterator<Item = ([f64; 4], f64)>| {
-            let (mut sum, mut total) = ([0.0; 4], 0.0);
-            for (point, weight) in terms {
-                total += weight;
-                sum.iter_mut().zip(point).for_each(|(sum, x)| *sum += weight * x);
-            }
-            sum.map(|x| x / total)
-        };
-        match &self.functional {
-            Functional::Value(point) => *point,
-            Functional::Sum(terms) => mean(&mut terms.iter().map(|(point, w)| (*point, w.abs()))),
-            Functional::FacetMean(_) | Functional::Coefficient => {
-                let vertices = (0..dimension + 1).filter(|&k| self.entity.contains(dimension, k));
-                mean(&mut vertices.map(|k| (vertex_point(k), 1.0)))
-            }
+        if let Functional::Value(point) = self.functional {
+            return point;
         }
+        let is_vertex = |k: usize| self.entity.contains(dimension, k);
+        let n = (0..4).filter(|&k| is_vertex(k)).count() as f64;
+        array_of(|k| if is_vertex(k) { 1.0 / n } else { 0.0 })
     }
     /// The node that the cell across a facet has in the place of this one, if the node is tied to
     /// the facet, which is opposite vertex `facet` of this cell and `other` of the cell across. Both
@@ -198,11 +182,7 @@ impl Node {
         };
         let functional = match &self.functional {
             Functional::Value(p) => Functional::Value(point(p)),
-            Functional::FacetMean(_) => Functional::FacetMean(other),
-            Functional::Coefficient => Functional::Coefficient,
-            Functional::Sum(terms) => {
-                Functional::Sum(terms.iter().map(|(p, w)| (point(p), *w)).collect())
-            }
+            other => other.clone(),
         };
         Some(Self { entity, functional })
     }

@@ -82,8 +82,8 @@ impl<const D: usize> FacetForm<D> for FacetLifts {
     }
     fn theory(&self) -> FormTheory<'_, D> {
         let (eta, rule) = (Some(self.eta), Some("eta int r_F . r_F".to_owned()));
-        let theory =
-            FormTheory::default().with_parameters(PenaltyParameters { sigma: None, eta, rule });
+        let parameters = PenaltyParameters { sigma: None, eta, rule };
+        let theory = FormTheory { parameters, ..FormTheory::default() };
         match self.with_all_lifts {
             true => theory.with_coercivity(self.eta > 0.0),
             false => theory.with_least_penalty(|facet| Self::weight((D + 1) as f64, facet)),

@@ -26,11 +26,6 @@ pub struct FormTheory<'f, const D: usize> {
 }
 
 impl<'f, const D: usize> FormTheory<'f, D> {
-    /// Sets the factors in force.
-    #[must_use]
-    pub fn with_parameters(self, parameters: PenaltyParameters) -> Self {
-        Self { parameters, ..self }
-    }
     /// States whether theory proves the form coercive with its own weights.
     #[must_use]
     pub fn with_coercivity(self, is_coercive: bool) -> Self {

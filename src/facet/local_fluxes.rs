@@ -50,9 +50,8 @@ impl<const D: usize> FacetForm<D> for LocalFluxes {
         let beta = if self.switch { "one-sided flux" } else { "mean flux" };
         let rule = Some(format!("eta / h_F, {beta}"));
         let sigma = Some(self.eta);
-        FormTheory::default()
-            .with_parameters(PenaltyParameters { sigma, eta: None, rule })
-            .with_coercivity(self.eta > 0.0)
+        let parameters = PenaltyParameters { sigma, eta: None, rule };
+        FormTheory { parameters, ..FormTheory::default() }.with_coercivity(self.eta > 0.0)
     }
     fn is_uniform(&self) -> bool {
         true

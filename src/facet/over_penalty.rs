@@ -93,10 +93,8 @@ impl<const D: usize> FacetForm<D> for OverPenalty {
             WeightRule::Isotropic => format!("eta / h_F^{}", 2 * k + 1),
             WeightRule::Anisotropic => format!("eta / (h^{} l_F)", 2 * k),
         };
-        let eta = Some(self.eta);
-        FormTheory::default()
-            .with_parameters(PenaltyParameters { sigma: None, eta, rule: Some(rule) })
-            .with_coercivity(self.eta > 0.0)
+        let parameters = PenaltyParameters { sigma: None, eta: Some(self.eta), rule: Some(rule) };
+        FormTheory { parameters, ..FormTheory::default() }.with_coercivity(self.eta > 0.0)
     }
     fn is_uniform(&self) -> bool {
         true

@@ -38,7 +38,7 @@ pub(super) fn check<const D: usize>(scheme: &Tested<'_, D>) -> Result<LawReport,
     let sizes = [coarse_level, fine_level].map(|n| 1.0 / n as f64);
     let degree = scheme.degree() as f64;
     // for a smooth solution without inequalities
-    let setting = Setting::new(D, Regularity::smooth()).with_regular_dual(true);
+    let setting = Setting { regular_dual: true, ..Setting::new(D, Regularity::smooth()) };
     let promised = scheme.expected_orders(&setting);
     let cell = Mesh::kuhn_box(&domain, [1; D]);
     let is_symmetric = || cell.is_ok_and(|mesh| scheme.form(&mesh).is_symmetric());

@@ -106,13 +106,9 @@ impl MeshError {
     }
     /// The error for a boundary group of undecided condition with these names.
     pub(crate) fn undecided(names: &[String]) -> Self {
-        let meant = |name: &String| BoundaryCondition::from_name(&name.trim().to_lowercase());
-        let hint =
-            names.iter().find_map(meant).map(|condition| format!("; write {}", condition.name()));
         let group = names.iter().map(excerpt).collect::<Vec<_>>().join(", ");
         let message = format!(
-            "nothing says what holds on boundary group {group}: give the problem data there (dirichlet_on, neumann_on, signorini_on) and bind it to the mesh (Problem::bind_boundary), or name the group dirichlet, neumann or contact{}",
-            hint.unwrap_or_default()
+            "nothing says what holds on boundary group {group}: give the problem data there (dirichlet_on, neumann_on, signorini_on) and bind it to the mesh (Problem::bind_boundary), or name the group dirichlet, neumann or contact"
         );
         Self::new(MeshErrorKind::UndecidedGroup, message)
     }

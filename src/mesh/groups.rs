@@ -27,29 +27,3 @@ pub(in crate::mesh) struct Groups {
     /// The names of groups that have facets between two cells.
     pub inside: Vec<String>,
 }
-
-/// Sets of names, each with a number.
-#[derive(Debug)]
-pub(in crate::mesh) struct NameSets(Vec<Vec<String>>);
-
-impl NameSets {
-    /// One set for each name.
-    pub fn new(names: &[String]) -> Self {
-        Self(names.iter().map(|name| vec![name.clone()]).collect())
-    }
-    /// The number of the union of two sets.
-    pub fn union(&mut self, a: usize, b: usize) -> usize {
-        let mut union = self.0[a].clone();
-        union.extend(self.0[b].iter().filter(|name| !self.0[a].contains(name)).cloned());
-        let is_union = |set: &Vec<String>| {
-            set.len() == union.len() && set.iter().all(|name| union.contains(name))
-        };
-        self.0.iter().position(is_union).unwrap_or_else(|| {
-            self.0.push(union);
-            self.0.len() - 1
-        })
-    }
-    pub fn names(&self, set: usize) -> &[String] {
-        &self.0[set]
-    }
-}

@@ -100,7 +100,7 @@ fn sort_vertices(vertices: &mut [u32], compare: &dyn Fn(u32, u32) -> Ordering) {
 
 /// The positions of points in their order along a Hilbert curve through the box around them: points that
 /// are near in this order are near in space. Of equal places the first point comes first.
-fn order_along_curve<const D: usize>(points: &[[f64; D]]) -> Vec<u32> {
+pub(in crate::mesh) fn order_along_curve<const D: usize>(points: &[[f64; D]]) -> Vec<u32> {
     let fold = |k: usize, start: f64, f: fn(f64, f64) -> f64| {
         points.iter().fold(start, |found, x| f(found, x[k]))
     };

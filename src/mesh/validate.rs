@@ -7,7 +7,7 @@ use super::components::Components;
 use super::error::{MeshError, MeshErrorKind};
 use super::facets::{CELL_LIMIT, HalfFacet, Neighbours, facet_of};
 use super::geometry::describe_point;
-use super::groups::{BoundaryGroup, Groups, NameSets};
+use super::groups::{BoundaryGroup, Groups};
 use super::overlap::UNITE;
 use super::shapes::shape::Shapes;
 use super::simplicial::Mesh;
@@ -154,65 +154,15 @@ impl<const D: usize> Mesh<D> {
         coincident: &[usize],
         (grouped, names): (&[GroupedFacet<D>], &[String]),
     ) -> Result<(Vec<BoundaryFacet>, Groups), MeshError> {
-        let vertices = |(c, local): HalfFacet| facet_of::<D>(self.cell(c), local);
-        let by_vertices = |facets: &mut dyn Iterator<Item = HalfFacet>| {
-            let mut all: Vec<_> = facets.enumerate().map(|(k, f)| (vertices(f), k)).collect();
-            all.sort_unstable();
-            all
-        };
-        let find = |all: &[([u32; D], usize)], facet: &[u32; D]| {
-            all.binary_search_by(|(vertices, _)| vertices.cmp(facet)).ok().map(|k| all[k].1)
-        };
-        let sorted = by_vertices(&mut open.iter().copied());
-        let mut all: Option<Vec<_>> = None;
-        let mut sets = NameSets::new(names);
-        let mut set_of: Vec<Option<usize>> = vec![None; open.len()];
-        let mut has_inner = vec![false; names.len()];
-        for (tag, t) in grouped.iter().enumerate() {
-            let group = usize::from(t.group);
-            let Some(name) = names.get(group) else {
-                let allowed = format!("less than {}, the number of names", names.len());
-                return Err(MeshError::parameter("group of a facet", group, allowed));
-            };
-            let mut key = t.vertices;
-            key.sort_unstable();
-            let refused = |kind: MeshErrorKind, why: String| {
-                let error = MeshError::new(kind, format!("facet {key:?} is in {why}"));
-                Err(error.of_vertices(&key).of_tagged_facet(tag))
-            };
-            let Some(k) = find(&sorted, &key) else {
-                let all = all.get_or_insert_with(|| by_vertices(&mut self.half_facets()));
-                let is_inside = find(all, &key).is_some();
-                if is_inside && BoundaryCondition::from_name(name).is_none() {
-                    has_inner[group] = true;
-                    continue;
-                }
-                let why = if is_inside { "lies between two cells" } else { "belongs to no cell" };
-                let why = format!("group {} but {why}", excerpt(name));
-                return refused(MeshErrorKind::NotABoundaryFacet, why);
-            };
-            let Some(first) = set_of[k] else {
-                set_of[k] = Some(group);
-                continue;
-            };
-            let conditions = (condition_of(sets.names(first)), BoundaryCondition::from_name(name));
-            if let (Some(one), Some(two)) = conditions
-                && one != two
-            {
-                let (one, two) = (one.name(), two.name());
-                let why =
-                    format!("two groups, {one} and {two}, with different boundary conditions");
-                return refused(MeshErrorKind::FacetWithTwoConditions, why);
-            }
-            set_of[k] = Some(sets.union(first, group));
-        }
+        let sorted = self.by_vertices(&mut open.iter().copied());
+        let GroupSets { sets, of_facets, has_inner } = self.group_sets(&sorted, grouped, names)?;
         let mut boundary = Vec::with_capacity(open.len());
         // sets without a facet are left out
-        let mut sets_used: Vec<Option<u16>> = Vec::new();
+        let mut sets_used: Vec<Option<u16>> = vec![None; sets.len()];
         let mut groups: Vec<BoundaryGroup> = Vec::new();
         for (key, k) in sorted {
             let (cell, local) = open[k];
-            let Some(set) = set_of[k] else {
+            let Some(set) = of_facets[k] else {
                 let message = format!(
                     "boundary facet {key:?} of cell {cell}, at {}, is in no group: {}",
                     describe_point(&self.facet_barycentre(cell, local)),
@@ -221,10 +171,10 @@ impl<const D: usize> Mesh<D> {
                 let error = MeshError::new(MeshErrorKind::UntaggedFacet, message);
                 return Err(error.of_cells([cell]).of_vertices(&key));
             };
-            sets_used.resize(sets_used.len().max(set + 1), None);
             let group = *sets_used[set].get_or_insert_with(|| {
-                let names = sets.names(set).to_vec();
-                groups.push(BoundaryGroup { condition: condition_of(&names), names });
+                let of_set = sets[set].iter().map(|&group| names[group].clone()).collect();
+                let condition = condition_of(&sets[set], names);
+                groups.push(BoundaryGroup { condition, names: of_set });
                 (groups.len() - 1) as u16
             });
             let condition =
@@ -244,6 +194,77 @@ impl<const D: usize> Mesh<D> {
         let inside = names.iter().zip(has_inner).filter(|(_, has)| *has);
         let inside = inside.map(|(name, _)| name.clone()).collect();
         Ok((boundary, Groups { regions: vec![Vec::new()], boundary: groups, inside }))
+    }
+
+    /// Facets by their vertices, sorted, with their positions.
+    fn by_vertices(&self, facets: &mut dyn Iterator<Item = HalfFacet>) -> Vec<([u32; D], usize)> {
+        let vertices = |(c, local): HalfFacet| facet_of::<D>(self.cell(c), local);
+        let mut all: Vec<_> = facets.enumerate().map(|(k, f)| (vertices(f), k)).collect();
+        all.sort_unstable();
+        all
+    }
+
+    /// The sets of groups of the facets of the boundary, which are sorted by their vertices.
+    fn group_sets(
+        &self,
+        open: &[([u32; D], usize)],
+        grouped: &[GroupedFacet<D>],
+        names: &[String],
+    ) -> Result<GroupSets, MeshError> {
+        let find = |all: &[([u32; D], usize)], facet: &[u32; D]| {
+            all.binary_search_by(|(vertices, _)| vertices.cmp(facet)).ok().map(|k| all[k].1)
+        };
+        let mut all: Option<Vec<_>> = None;
+        let mut sets: Vec<Vec<usize>> = (0..names.len()).map(|group| vec![group]).collect();
+        let mut of_facets: Vec<Option<usize>> = vec![None; open.len()];
+        let mut has_inner = vec![false; names.len()];
+        for (tag, t) in grouped.iter().enumerate() {
+            let group = usize::from(t.group);
+            let Some(name) = names.get(group) else {
+                let allowed = format!("less than {}, the number of names", names.len());
+                return Err(MeshError::parameter("group of a facet", group, allowed));
+            };
+            let mut key = t.vertices;
+            key.sort_unstable();
+            let refused = |kind: MeshErrorKind, why: String| {
+                let error = MeshError::new(kind, format!("facet {key:?} is in {why}"));
+                Err(error.of_vertices(&key).of_tagged_facet(tag))
+            };
+            let Some(k) = find(open, &key) else {
+                let all = all.get_or_insert_with(|| self.by_vertices(&mut self.half_facets()));
+                let is_inside = find(all, &key).is_some();
+                if is_inside && BoundaryCondition::from_name(name).is_none() {
+                    has_inner[group] = true;
+                    continue;
+                }
+                let why = if is_inside { "lies between two cells" } else { "belongs to no cell" };
+                let why = format!("group {} but {why}", excerpt(name));
+                return refused(MeshErrorKind::NotABoundaryFacet, why);
+            };
+            let Some(first) = of_facets[k] else {
+                of_facets[k] = Some(group);
+                continue;
+            };
+            let conditions =
+                (condition_of(&sets[first], names), BoundaryCondition::from_name(name));
+            if let (Some(one), Some(two)) = conditions
+                && one != two
+            {
+                let (one, two) = (one.name(), two.name());
+                let why =
+                    format!("two groups, {one} and {two}, with different boundary conditions");
+                return refused(MeshErrorKind::FacetWithTwoConditions, why);
+            }
+            let mut union = [&sets[first][..], &[group]].concat();
+            union.sort_unstable();
+            union.dedup();
+            let known = sets.iter().position(|set| *set == union);
+            of_facets[k] = known.or(Some(sets.len()));
+            if known.is_none() {
+                sets.push(union);
+            }
+        }
+        Ok(GroupSets { sets, of_facets, has_inner })
     }
 
     /// Drops vertices that no cell has. The others keep their order, and so the vertices of a cell ascend.
@@ -314,9 +335,19 @@ pub(super) fn check_size(cells: usize, vertices: usize) -> Result<(), MeshError>
     Ok(())
 }
 
-/// The condition that one of the names of a group stands for.
-fn condition_of(names: &[String]) -> Option<BoundaryCondition> {
-    names.iter().find_map(|name| BoundaryCondition::from_name(name))
+/// Sets of groups by number.
+struct GroupSets {
+    /// First a set with each group alone.
+    sets: Vec<Vec<usize>>,
+    /// The set of each facet of the boundary.
+    of_facets: Vec<Option<usize>>,
+    /// Whether each group has facets between two cells.
+    has_inner: Vec<bool>,
+}
+
+/// The condition that one of the names of a set of groups stands for.
+fn condition_of(set: &[usize], names: &[String]) -> Option<BoundaryCondition> {
+    set.iter().find_map(|&group| BoundaryCondition::from_name(&names[group]))
 }
 
 /// What to do with a boundary facet in no group; where it lies on another one, given how many facets do.

@@ -159,11 +159,10 @@ const ROUNDINGS: f64 = 8.0;
 /// For each two groups whose Dirichlet values differ at a vertex where they meet a sentence with the first such vertex:
 /// no function of finite energy takes both values.
 pub(super) fn dirichlet_jumps<const D: usize>(problem: &Problem<D>, mesh: &Mesh<D>) -> Vec<String> {
-    let Some(data) =
-        DataOnMesh::new(problem, mesh).ok().filter(|d| D > 1 && d.dirichlet.has_names())
-    else {
+    if D == 1 || problem.dirichlet.named.is_empty() {
         return Vec::new();
-    };
+    }
+    let Ok(data) = DataOnMesh::new(problem, mesh) else { return Vec::new() };
     let of_facets = mesh.boundary().iter().filter(|f| f.condition == BoundaryCondition::Dirichlet);
     let mut values: Vec<(u32, usize, f64)> = Vec::new();
     for facet in of_facets {

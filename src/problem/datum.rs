@@ -271,8 +271,8 @@ impl<const D: usize> fmt::Debug for Datum<D> {
             Datum::Polynomial { degree, .. } => write!(f, "Polynomial({degree})"),
             Datum::Piecewise { .. } => f.write_str("Piecewise(..)"),
             Datum::Discrete(u) => u.fmt(f),
-            Datum::Shifted(datum) => datum.fmt(f),
-            Datum::Sum(sum) => sum.fmt(f),
+            Datum::Shifted(_) => f.write_str("Shifted(..)"),
+            Datum::Sum(sum) => f.debug_list().entries(&*sum.terms).finish(),
         }
     }
 }
@@ -371,18 +371,5 @@ impl<const D: usize> Shifted<D> {
     /// A unit of rounding in values that are the difference of a datum and a constant.
     fn rounding(&self) -> f64 {
         self.constants.rounding()
-    }
-}
-
-impl<const D: usize> fmt::Debug for Shifted<D> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Shifted").field("datum", &self.datum).field("factor", &self.factor).finish()
-    }
-}
-
-impl<const D: usize> fmt::Debug for Sum<D> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("Sum")?;
-        f.debug_list().entries(&*self.terms).finish()
     }
 }

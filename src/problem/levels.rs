@@ -20,6 +20,9 @@ impl Range {
     fn add(&mut self, value: f64) {
         (self.least, self.most) = (self.least.min(value), self.most.max(value));
     }
+    fn extend(&mut self, values: impl IntoIterator<Item = f64>) {
+        values.into_iter().for_each(|value| self.add(value));
+    }
     /// The range of the numbers of both.
     fn and(self, other: Self) -> Self {
         Self { least: self.least.min(other.least), most: self.most.max(other.most) }
@@ -81,79 +84,40 @@ impl BodyConstants {
         let data = DataOnMesh::new(problem, mesh)?;
         let (bodies, body_of) = bodies(mesh);
         let mut ranges = vec![Ranges::NONE; bodies];
-        let body = |cell: usize| body_of[cell] as usize;
-        let dirichlet = |group: usize, _: usize, x: &Point<D>| {
-            Some(data.dirichlet.of(group).map_or(0.0, |u| u.at(x)))
-        };
-        add_on_facets(
-            mesh,
-            (BoundaryCondition::Dirichlet, DIRICHLET),
-            dirichlet,
-            body,
-            &mut ranges,
-        );
-        // a range of Dirichlet values that reaches zero decides without the other data
-        let is_decided =
-            |of: &Ranges| of.of_values[DIRICHLET].has_numbers() && of.constant() == 0.0;
-        if ranges.iter().all(is_decided) {
-            return Ok(Self::default());
-        }
-        let gap = |group: usize, cell: usize, x: &Point<D>| {
-            data.gap.of(group).map(|gap| gap.in_cell(mesh, cell, x))
-        };
-        add_on_facets(mesh, (BoundaryCondition::Contact, GAPS), gap, body, &mut ranges);
-        add_values_in_cells(&data, mesh, body, &mut ranges);
         for facet in mesh.boundary() {
-            let Some(side) = data.robin.of(usize::from(facet.group)) else { continue };
-            let cell = facet.cell as usize;
+            let (cell, group) = (facet.cell as usize, usize::from(facet.group));
+            let of_body = &mut ranges[body_of[cell] as usize];
             for v in mesh.facet_vertices(cell, usize::from(facet.local)) {
-                let value = side.value.in_cell(mesh, cell, &mesh.vertices()[v as usize]);
-                ranges[body(cell)].of_quotients.add(value);
+                let x = &mesh.vertices()[v as usize];
+                let in_cell = |datum: &Datum<D>| datum.in_cell(mesh, cell, x);
+                match facet.condition {
+                    BoundaryCondition::Dirichlet => of_body.of_values[DIRICHLET]
+                        .add(data.dirichlet.of(group).map_or(0.0, |u| u.at(x))),
+                    BoundaryCondition::Contact => {
+                        of_body.of_values[GAPS].extend(data.gap.of(group).map(in_cell))
+                    }
+                    BoundaryCondition::Neumann => of_body
+                        .of_quotients
+                        .extend(data.robin.of(group).map(|side| in_cell(&side.value))),
+                }
+            }
+        }
+        for cell in 0..mesh.n_cells() {
+            let (region, of_body) = (mesh.region(cell), &mut ranges[body_of[cell] as usize]);
+            let at = |datum: &Datum<D>, x: &Point<D>| datum.in_cell(mesh, cell, x);
+            let vertices = || mesh.cell(cell).iter().map(|&v| mesh.vertices()[v as usize]);
+            for bound in [data.lower.of(region), data.upper.of(region)].into_iter().flatten() {
+                of_body.of_values[OBSTACLES].extend(vertices().map(|x| at(bound, &x)));
+            }
+            let Some(reaction) = data.reaction.of(region) else { continue };
+            for x in vertices().chain([mesh.barycentre(cell)]) {
+                let reaction = at(reaction, &x);
+                if reaction > 0.0 {
+                    let source = data.source.of(region).map_or(0.0, |f| at(f, &x));
+                    of_body.of_quotients.add(source / reaction);
+                }
             }
         }
         Ok(Self::new(ranges.iter().map(Ranges::constant).collect(), body_of))
-    }
-}
-
-/// Adds the values of a datum at the vertices of the facets of its condition.
-fn add_on_facets<const D: usize>(
-    mesh: &Mesh<D>,
-    (condition, rank): (BoundaryCondition, usize),
-    value: impl Fn(usize, usize, &Point<D>) -> Option<f64>,
-    body: impl Fn(usize) -> usize,
-    ranges: &mut [Ranges],
-) {
-    for facet in mesh.boundary().iter().filter(|facet| facet.condition == condition) {
-        let (cell, group) = (facet.cell as usize, usize::from(facet.group));
-        for v in mesh.facet_vertices(cell, usize::from(facet.local)) {
-            if let Some(value) = value(group, cell, &mesh.vertices()[v as usize]) {
-                ranges[body(cell)].of_values[rank].add(value);
-            }
-        }
-    }
-}
-
-/// Adds the values of obstacles at the vertices of cells, and those of source over reaction there and at barycentres.
-fn add_values_in_cells<const D: usize>(
-    data: &DataOnMesh<D>,
-    mesh: &Mesh<D>,
-    body_of: impl Fn(usize) -> usize,
-    ranges: &mut [Ranges],
-) {
-    for cell in 0..mesh.n_cells() {
-        let (region, body) = (mesh.region(cell), &mut ranges[body_of(cell)]);
-        let at = |datum: &Datum<D>, x: &Point<D>| datum.in_cell(mesh, cell, x);
-        let vertices = || mesh.cell(cell).iter().map(|&v| mesh.vertices()[v as usize]);
-        for bound in [&data.lower, &data.upper].into_iter().filter_map(|bound| bound.of(region)) {
-            vertices().for_each(|x| body.of_values[OBSTACLES].add(at(bound, &x)));
-        }
-        let Some(reaction) = data.reaction.of(region) else { continue };
-        for x in vertices().chain([mesh.barycentre(cell)]) {
-            let reaction = at(reaction, &x);
-            if reaction > 0.0 {
-                let source = data.source.of(region).map_or(0.0, |f| at(f, &x));
-                body.of_quotients.add(source / reaction);
-            }
-        }
     }
 }

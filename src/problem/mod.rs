@@ -201,14 +201,6 @@ impl<const D: usize> Problem<D> {
         self.coefficient.give(ALL, alpha.into());
         self
     }
-    /// Sets the tensor by which the diffusion coefficient is multiplied: rows of numbers, or [`Tensor::function`]. It must be
-    /// symmetric and positive definite. Linear elements take its value at the barycentre of each cell; on others only
-    /// constants are possible.
-    #[must_use]
-    pub fn tensor(mut self, tensor: impl Into<Tensor<D>>) -> Self {
-        self.tensor.give(ALL, tensor.into());
-        self
-    }
     /// Sets the reaction coefficient: a number, a closure whose argument is written with its
     /// type, `|x: &Point<2>| ..`, or [`Datum::piecewise`].
     #[must_use]
@@ -238,15 +230,6 @@ impl<const D: usize> Problem<D> {
     #[must_use]
     pub fn signorini(mut self, gap: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static) -> Self {
         self.gap.give(ALL, gap.into());
-        self
-    }
-    /// Sets the threshold of friction on the Neumann boundary, as [`Problem::friction_on`] on a group.
-    #[must_use]
-    pub fn friction(
-        mut self,
-        threshold: impl Fn(&Point<D>) -> f64 + Send + Sync + 'static,
-    ) -> Self {
-        self.friction.give(ALL, threshold.into());
         self
     }
     /// Sets the constraint set: where obstacles and gap bind. A [`Study`](crate::study::Study) may

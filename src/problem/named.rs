@@ -53,7 +53,9 @@ impl<const D: usize> Problem<D> {
         self.coefficient.give(region, alpha.into());
         self
     }
-    /// Sets the tensor of the diffusion coefficient in a region, as [`Problem::tensor`].
+    /// Sets the tensor by which the diffusion coefficient is multiplied in a region: rows of numbers, or
+    /// [`Tensor::function`]. It must be symmetric and positive definite. Linear elements take its value at the barycentre
+    /// of each cell; on others only constants are possible.
     #[must_use]
     pub fn tensor_in(mut self, region: &str, tensor: impl Into<Tensor<D>>) -> Self {
         self.tensor.give(region, tensor.into());

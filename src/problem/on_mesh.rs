@@ -48,25 +48,14 @@ impl<F: Clone> ByGroup<F> {
             false => Self { everywhere: change(0, self.everywhere.as_ref()), by_group: Vec::new() },
         }
     }
-    /// The same, told apart by groups, with none on boundary groups of another condition.
-    fn only_on(self, condition: BoundaryCondition, groups: &[BoundaryGroup]) -> Self {
+    /// The same, told apart by groups, with none on boundary groups of another condition: it is no part of the problem.
+    fn on(self, condition: BoundaryCondition, groups: &[BoundaryGroup]) -> Self {
         let has_condition = |group: usize| groups[group].condition == Some(condition);
         let on_group = |group, datum: Option<&F>| datum.filter(|_| has_condition(group)).cloned();
         if self.everywhere.is_none() && self.by_group.is_empty() {
             return self;
         }
         self.changed((groups.len(), true), on_group)
-    }
-    /// The same without what lies on boundary groups of another condition: it is no part of the problem.
-    fn on(mut self, condition: BoundaryCondition, groups: &[BoundaryGroup]) -> Self {
-        let has_condition = |group: &BoundaryGroup| group.condition == Some(condition);
-        self.everywhere = self.everywhere.filter(|_| groups.iter().any(has_condition));
-        for (datum, group) in self.by_group.iter_mut().zip(groups) {
-            if !has_condition(group) {
-                *datum = None;
-            }
-        }
-        self
     }
 }
 
@@ -244,10 +233,9 @@ impl<const D: usize> DataOnMesh<D> {
             gap: ByGroup::new(&problem.gap, &groups).on(BoundaryCondition::Contact, boundary),
             neumann: ByGroup::new(&problem.neumann, &groups)
                 .on(BoundaryCondition::Neumann, boundary),
-            robin: ByGroup::new(&problem.robin, &groups)
-                .only_on(BoundaryCondition::Neumann, boundary),
+            robin: ByGroup::new(&problem.robin, &groups).on(BoundaryCondition::Neumann, boundary),
             friction: ByGroup::new(&problem.friction, &groups)
-                .only_on(BoundaryCondition::Neumann, boundary),
+                .on(BoundaryCondition::Neumann, boundary),
             dirichlet_rank: groups.iter().map(|names| rank(names)).collect(),
             constants_differ: false,
         })

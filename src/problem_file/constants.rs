@@ -38,7 +38,7 @@ impl<'t> Source<'t> {
         root: &DeTable<'t>,
         given: &Constants,
     ) -> Result<(), ProblemFileError> {
-        let kind = ProblemFileErrorKind::Constant;
+        let kind = ProblemFileErrorKind::Text;
         let none = DeTable::new();
         let (table, offset) = match root.get("constants") {
             Some(value) => (self.table("constants", value)?, value.span().start),

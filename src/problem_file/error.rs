@@ -41,30 +41,15 @@ impl ProblemFileError {
 pub enum ProblemFileErrorKind {
     /// The file cannot be read.
     Unreadable,
-    /// The file is not TOML.
-    Syntax,
-    /// A key that means nothing.
-    UnknownKey,
-    /// A key is missing in a table.
-    Missing,
-    /// A value of another type.
-    WrongType,
-    /// An expression cannot be read.
-    Expression,
-    /// The name or the value of a constant is not allowed, or a caller sets a constant that the file does not have.
-    Constant,
-    /// A number or expression has a value that the datum cannot have.
+    /// The file is not TOML, or a key, the type of a value, an expression or a constant is wrong or missing.
+    Text,
+    /// A number or expression has a value that the datum cannot have, or a gradient is not that of its function.
     Value,
-    /// A component of the gradient of the exact solution is not that of its value.
-    Gradient,
-    /// The mesh has no such region or boundary group.
-    UnknownGroup,
-    /// The file does not say what holds on a boundary group of the mesh.
-    MissingBoundary,
-    /// The mesh file that it names is no mesh: the source is a [`GmshError`](crate::mesh::gmsh::GmshError).
+    /// The mesh has no such region or boundary group, or the file does not say what holds on a boundary group.
+    Group,
+    /// The mesh file that it names is no mesh, or the shape of a boundary group does not fit it: the source of the first
+    /// is a [`GmshError`](crate::mesh::gmsh::GmshError).
     Mesh,
-    /// The shape of a boundary group does not fit the mesh: the message is that of a [`MeshError`](crate::mesh::MeshError).
-    Shape,
     /// Its data do not make a problem: the source is an [`Error`](crate::error::Error).
     Problem,
 }

@@ -74,13 +74,13 @@ impl<'t> Source<'t> {
     /// The error for a key that is missing in the table at an offset in bytes.
     pub fn missing(&self, offset: usize, key: &str, purpose: &str) -> ProblemFileError {
         let message = format!("`{key}` is missing: {purpose}");
-        self.error(offset, ProblemFileErrorKind::Missing, message)
+        self.error(offset, ProblemFileErrorKind::Text, message)
     }
 
     /// The error for a key at an offset in bytes that means nothing.
     fn unknown_key(&self, offset: usize, key: &str, allowed: &str) -> ProblemFileError {
         let message = format!("unknown key `{}`; allowed are {allowed}", excerpt(key));
-        self.error(offset, ProblemFileErrorKind::UnknownKey, message)
+        self.error(offset, ProblemFileErrorKind::Text, message)
     }
 
     /// Line and column of an offset in bytes, from one.
@@ -96,7 +96,7 @@ impl<'t> Source<'t> {
     pub fn root(&self) -> Found<DeTable<'t>> {
         let syntax = |e: toml::de::Error| {
             let offset = e.span().map_or(0, |span| span.start);
-            self.error(offset, ProblemFileErrorKind::Syntax, e.message().to_owned())
+            self.error(offset, ProblemFileErrorKind::Text, e.message().to_owned())
         };
         Ok(DeTable::parse(self.text).map_err(syntax)?.into_inner())
     }
@@ -157,7 +157,7 @@ impl<'t> Source<'t> {
     pub fn wrong_type(&self, key: &str, value: &Value<'t>, expected: &str) -> ProblemFileError {
         let found = excerpt(&self.text[value.span()]);
         let message = format!("`{key}` must be {expected}, not {found}");
-        self.error(value.span().start, ProblemFileErrorKind::WrongType, message)
+        self.error(value.span().start, ProblemFileErrorKind::Text, message)
     }
 
     /// A table within a table.
@@ -212,7 +212,7 @@ impl<'t> Source<'t> {
             // an empty string is all quotes
             let quotes = if text.is_empty() { quotes / 2 } else { quotes };
             let offset = value.span().start + quotes + error.offset;
-            self.error(offset, ProblemFileErrorKind::Expression, error.message)
+            self.error(offset, ProblemFileErrorKind::Text, error.message)
         })?;
         // constants are integrated exactly
         Ok(expression.constant().map_or(Formula::Expression(expression), Formula::Number))

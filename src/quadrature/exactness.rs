@@ -30,7 +30,7 @@ impl Rule {
     /// The means of all monomials in all barycentric coordinates of a degree: they span the polynomials up to that
     /// degree.
     pub(crate) fn moments(&self, dimension: usize, degree: usize) -> impl Iterator<Item = Moment> {
-        powers(dimension + 1, degree).into_iter().map(move |powers| {
+        monomials(dimension + 1, degree).into_iter().map(move |powers| {
             let value = |x: &[f64; 4]| -> f64 {
                 x.iter().zip(&powers).map(|(x, &p)| x.powi(p as i32)).product()
             };
@@ -42,12 +42,12 @@ impl Rule {
 }
 
 /// The powers of monomials of a degree in some variables.
-fn powers(variables: usize, degree: usize) -> Vec<Vec<usize>> {
+pub(super) fn monomials(variables: usize, degree: usize) -> Vec<Vec<usize>> {
     if variables == 1 {
         return vec![vec![degree]];
     }
     let with_first = |first: usize| {
-        powers(variables - 1, degree - first)
+        monomials(variables - 1, degree - first)
             .into_iter()
             .map(move |rest| [vec![first], rest].concat())
     };

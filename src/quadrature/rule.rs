@@ -31,9 +31,6 @@ impl Rule {
     /// The largest degree of a rule, with fifty points in each direction: 125000 in space.
     pub const LARGEST_DEGREE: usize = 99;
     /// The rule of [`Rule::new`], as one of the family with this name.
-    ///
-    /// # Errors
-    /// [`QuadratureError::Dimension`], [`QuadratureError::NoRule`].
     pub(super) fn of_family(
         family: &str,
         dimension: usize,
@@ -52,8 +49,9 @@ impl Rule {
     /// A rule of one's own on the simplex of this dimension.
     ///
     /// # Errors
-    /// [`QuadratureError::Dimension`], [`QuadratureError::Lengths`], [`QuadratureError::Point`],
-    /// [`QuadratureError::Weights`].
+    /// [`QuadratureError`] for a dimension above three, for numbers of points and weights that differ or are zero, for
+    /// barycentric coordinates that do not sum to one or are not zero beyond the dimension, for a weight that is not
+    /// finite, and for weights that do not sum to one.
     pub fn from_points(
         dimension: usize,
         points: Vec<[f64; 4]>,
@@ -62,7 +60,7 @@ impl Rule {
         check_dimension(dimension)?;
         let near_one = |sum: f64| (sum - 1.0).abs() < 1e-12;
         if points.len() != weights.len() || points.is_empty() {
-            return Err(QuadratureError::Lengths(format!(
+            return Err(QuadratureError(format!(
                 "{} points have {} weights: a rule has one weight for each point",
                 points.len(),
                 weights.len()
@@ -71,7 +69,7 @@ impl Rule {
         for (point, (&coordinates, &weight)) in points.iter().zip(&weights).enumerate() {
             let outside = coordinates.iter().skip(dimension + 1).any(|&x| x != 0.0);
             if outside || !near_one(coordinates.iter().sum()) || !weight.is_finite() {
-                return Err(QuadratureError::Point(format!(
+                return Err(QuadratureError(format!(
                     "point {point} with weight {weight} and coordinates {coordinates:?} is none of a rule in dimension {dimension}: barycentric coordinates are finite and sum to one, entries beyond the dimension are zero, weights are finite"
                 )));
             }
@@ -79,7 +77,7 @@ impl Rule {
         let sum: f64 = weights.iter().sum();
         if !near_one(sum) {
             let message = format!("the weights of a rule sum to {sum}: divide them by their sum");
-            return Err(QuadratureError::Weights(message));
+            return Err(QuadratureError(message));
         }
         Ok(Self { points, weights })
     }
@@ -134,7 +132,7 @@ impl Rule {
 pub(super) fn check_dimension(dimension: usize) -> Result<(), QuadratureError> {
     match dimension {
         0..=3 => Ok(()),
-        _ => Err(QuadratureError::Dimension(format!(
+        _ => Err(QuadratureError(format!(
             "there are no rules in dimension {dimension}: simplices have the dimensions 0 to 3"
         ))),
     }

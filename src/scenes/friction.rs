@@ -23,7 +23,7 @@ pub fn friction_1d() -> Scene<1> {
     let exact = Exact::new(|x| 1.5 * x[0] - x[0] * x[0], |x| Point::<1>::new(1.5 - 2.0 * x[0]));
     let problem = Problem::new()
         .constant_source(2.0)
-        .friction(|x| if x[0] < 0.5 { 2.0 } else { 0.5 })
+        .friction_on("default", |x: &Point<1>| if x[0] < 0.5 { 2.0 } else { 0.5 })
         .solved_by(exact);
     Scene::new("friction-1d", line(0.0), problem)
         .summary("a string held by friction: one end sticks, one slips")
@@ -39,7 +39,7 @@ pub fn friction_both_1d() -> Scene<1> {
     let problem = Problem::new()
         .source(move |x| 4.0 * x[0] + value(x))
         .reaction(1.0)
-        .friction(|_| 1.0)
+        .friction_on("default", |_: &Point<1>| 1.0)
         .polynomial_data(3)
         .solved_by(exact);
     Scene::new("friction-both-1d", line(-1.0), problem)
@@ -63,7 +63,7 @@ pub fn friction<const D: usize>() -> Scene<D> {
     };
     let exact = Exact::new(move |x| x[D - 1] + power(x).value, gradient);
     let domain = BoxDomain::above_contact().side(D - 1, 0, BoundaryCondition::Neumann);
-    let problem = Problem::new().friction(|_| 1.0).solved_by(exact);
+    let problem = Problem::new().friction_on("default", |_: &Point<D>| 1.0).solved_by(exact);
     Scene::new(format!("friction-{D}d"), domain, problem)
         .summary("friction without load: stick and slip on one side")
         .regularity(Regularity::new(2.5))

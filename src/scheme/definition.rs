@@ -98,20 +98,12 @@ impl<const D: usize> dyn Scheme<D> + '_ {
     /// The label in tables, legends, files and rows: name, constraint set and choices without what is
     /// default, as [`NamedScheme`](super::NamedScheme) reads it.
     pub fn label_on(&self, set: &dyn ConstraintSet) -> String {
-        self.label_with(set, None)
-    }
-    /// The label with these choices, if there are any, in place of those that are not default.
-    pub(crate) fn label_with(
-        &self,
-        set: &dyn ConstraintSet,
-        shown: Option<SchemeOptions>,
-    ) -> String {
         let (placement, own) = (self.constraint_on(set), self.constraint_on(&Nodes));
         let mut label = self.name().to_owned();
         if let Some(placement) = placement.filter(|placement| Some(placement) != own.as_ref()) {
             label += &format!(":{placement}");
         }
-        let choices = shown.unwrap_or_else(|| self.choices()).to_string();
+        let choices = self.choices().to_string();
         if choices.is_empty() { label } else { format!("{label}@{choices}") }
     }
     /// Orders that theory proves in this setting with this constraint set: those with bounds at all

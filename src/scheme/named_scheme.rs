@@ -11,8 +11,7 @@ use crate::input::excerpt;
 /// A scheme as users write it, `NAME[:PLACEMENT][@KEY=VALUE[,KEY=VALUE...]]`: for instance
 /// `wopsip:facet-means@factor=10,weight=anisotropic`. The keys are the fields of [`SchemeOptions`];
 /// [`keys_of_scheme`] says which of them a scheme takes. Displayed as its label, in which nothing
-/// stands that is default, so that two ways to write one scheme have one label. In a [list](Self::list) a choice
-/// that is default stands in the label if it was written beside other choices of the same scheme.
+/// stands that is default, so that two ways to write one scheme have one label.
 ///
 /// ```
 /// use unilateral::scheme::NamedScheme;
@@ -24,8 +23,6 @@ pub struct NamedScheme {
     name: &'static str,
     placement: Option<&'static str>,
     options: SchemeOptions,
-    /// Whether all choices written stand in the label.
-    shows_all: bool,
 }
 
 /// Why a scheme as a user wrote it cannot be made: what is wrong, where, and what may stand there.
@@ -73,7 +70,7 @@ impl FromStr for NamedScheme {
 impl fmt::Display for NamedScheme {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let set = self.constraint_set().unwrap_or_else(|| Arc::new(Nodes));
-        f.write_str(&self.make::<2>().label_with(&set, self.shown_choices()))
+        f.write_str(&self.make::<2>().label_on(&set))
     }
 }
 
@@ -105,14 +102,6 @@ impl NamedScheme {
                 }
             }
         }
-        let written = schemes.clone();
-        for scheme in &mut schemes {
-            let is_other = |other: &Self| {
-                other.name == scheme.name
-                    && ![scheme.options, SchemeOptions::default()].contains(&other.options)
-            };
-            scheme.shows_all = written.iter().any(is_other);
-        }
         Ok(schemes)
     }
     /// Every scheme with its own choices.
@@ -121,7 +110,7 @@ impl NamedScheme {
     }
     /// The scheme of a name with its own choices.
     fn plain(name: &'static str) -> Self {
-        Self { name, placement: None, options: SchemeOptions::default(), shows_all: false }
+        Self { name, placement: None, options: SchemeOptions::default() }
     }
     /// The name of the scheme, without placement and choices.
     pub const fn name(&self) -> &'static str {
@@ -134,11 +123,7 @@ impl NamedScheme {
     /// The label without choices: the name, with the placement of bounds if that is not the default.
     #[cfg(feature = "report")]
     pub(crate) fn label_without_choices(&self) -> String {
-        Self { options: SchemeOptions::default(), shows_all: false, ..*self }.to_string()
-    }
-    /// The choices that stand in the label, where those that are default are among them.
-    pub(crate) fn shown_choices(&self) -> Option<SchemeOptions> {
-        self.shows_all.then_some(self.options)
+        Self { options: SchemeOptions::default(), ..*self }.to_string()
     }
     /// The scheme with the penalty of these options if none is written and the scheme takes it.
     #[must_use]

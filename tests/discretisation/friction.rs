@@ -402,7 +402,7 @@ fn friction_without_a_name_leaves_other_sides_alone() {
         .side(0, 0, BoundaryCondition::Neumann)
         .side(1, 0, BoundaryCondition::Contact);
     let of = || Problem::<2>::new().source(|x: &Point<2>| 6.0 - 12.0 * x[0]).signorini(|_| -0.05);
-    let everywhere = of().friction(|_| 0.3);
+    let everywhere = of().friction_on("default", |_: &Point<2>| 0.3);
     let named = of().friction_on("left", 0.3);
     for name in ["p1", "cr", "sipg", "p2"] {
         let found = [&everywhere, &named].map(|problem| {

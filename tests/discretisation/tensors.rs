@@ -27,7 +27,7 @@ fn smooth<const D: usize>(tensor: Matrix<D>) -> Problem<D> {
     Problem::new()
         .source(move |x| 4.0 * slopes.dot(&(tensor * slopes)) * angle(x).sin())
         .exact(move |x| angle(x).sin(), move |x| slopes * (2.0 * angle(x).cos()))
-        .tensor(Tensor::Constant(tensor))
+        .tensor_in("default", Tensor::Constant(tensor))
 }
 
 fn errors<const D: usize>(problem: &Problem<D>, n: usize, name: &str) -> [f64; 3] {
@@ -95,8 +95,10 @@ fn a_multiple_of_the_identity_is_a_coefficient() {
     let problem = || {
         Problem::<2>::new().source(|x: &Point<2>| 10.0 * x[0].sin() - 8.0).obstacle_below(|_| -0.1)
     };
-    let (by_tensor, by_coefficient) =
-        (problem().tensor([[3.0, 0.0], [0.0, 3.0]]), problem().coefficient(|_: &Point<2>| 3.0));
+    let (by_tensor, by_coefficient) = (
+        problem().tensor_in("default", [[3.0, 0.0], [0.0, 3.0]]),
+        problem().coefficient(|_: &Point<2>| 3.0),
+    );
     let mesh = cube::<2>(8);
     for name in LINEARS.into_iter().chain(["p2", "sipg-p2", "br2-p2", "wopsip:facet-means"]) {
         let [one, other] = [&by_tensor, &by_coefficient].map(|problem| {
@@ -131,7 +133,7 @@ fn a_tensor_is_a_change_of_coordinates_for_solution_and_bound() {
             .obstacle_below(move |x: &Point<2>| -0.08 + 0.02 * (x[0] * width + x[1]))
             .obstacles_of_degree(1)
     };
-    let by_tensor = data(Problem::new().tensor([[4.0, 0.0], [0.0, 1.0]]), 1.0);
+    let by_tensor = data(Problem::new().tensor_in("default", [[4.0, 0.0], [0.0, 1.0]]), 1.0);
     let by_mesh = data(Problem::new(), 2.0);
     for name in ["p1", "cr", "p2", "p2:bernstein"] {
         let solve_on = |problem: &Problem<2>, mesh: &Mesh<2>| {
@@ -176,7 +178,7 @@ fn a_tensor_that_is_a_function_keeps_the_order_of_linears() {
     // -div(T grad u) with T = [[1 + x, y / 2], [y / 2, 2]] and u = x^2 + y
     let tensor = |x: &Point<2>| Matrix::<2>::new(1.0 + x[0], 0.5 * x[1], 0.5 * x[1], 2.0);
     let problem = Problem::<2>::new()
-        .tensor(Tensor::function(tensor))
+        .tensor_in("default", Tensor::function(tensor))
         .source(|x: &Point<2>| -(2.0 + 5.0 * x[0]))
         .exact(|x| x[0] * x[0] + x[1], |x| Point::from([2.0 * x[0], 1.0]));
     for name in ["p1", "sipg", "wopsip", "br2"] {
@@ -219,15 +221,18 @@ fn bad_tensors_are_refused() {
     };
     for rows in [[[1.0, 2.0], [2.0, 1.0]], [[1.0, 0.5], [0.0, 1.0]], [[1.0, 0.0], [0.0, f64::NAN]]]
     {
-        let message = refuse(Problem::new().tensor(rows), "p1");
+        let message = refuse(Problem::new().tensor_in("default", rows), "p1");
         assert!(message.contains("tensor coefficient is [[1.0"), "{message}");
         assert!(message.contains("cell 0: it must be finite, symmetric and positive"), "{message}");
     }
     let varying = || Tensor::function(|x: &Point<2>| Matrix::identity() * (1.0 + x[0]));
     for name in ["p2", "sipg-p2"] {
-        let message = refuse(Problem::new().tensor(varying()), name);
+        let message = refuse(Problem::new().tensor_in("default", varying()), name);
         assert!(message.contains("linear elements only"), "{message}");
     }
-    let twice = refuse(Problem::new().tensor(varying()).tensor(varying()), "p1");
+    let twice = refuse(
+        Problem::new().tensor_in("default", varying()).tensor_in("default", varying()),
+        "p1",
+    );
     assert!(twice.contains("tensor coefficient without a name is given twice"), "{twice}");
 }

@@ -55,14 +55,9 @@ fn an_item_without_a_name_continues_the_scheme_before_it() {
         list("p1,wopsip,wopsip@factor=10,p1,wopsip@factor=1"),
         ["p1", "wopsip", "wopsip@factor=10"]
     );
-    // a choice that is default stands where it was written beside others
     assert_eq!(
         list("wopsip@factor=1,wopsip@factor=100,sipg@factor=1.5,nipg"),
-        ["wopsip@factor=1", "wopsip@factor=100", "sipg", "nipg"]
-    );
-    assert_eq!(
-        list("sipg@factor=1.5,sipg:facet-means@sigma=10"),
-        ["sipg@factor=1.5", "sipg:facet-means@sigma=10"]
+        ["wopsip", "wopsip@factor=100", "sipg", "nipg"]
     );
     assert_eq!(list("all,sipg@factor=1.05").len(), SCHEMES.len() + 1);
     assert_eq!(list("all,all").len(), SCHEMES.len());
@@ -149,17 +144,6 @@ fn penalties_below_the_bound_are_told() {
     };
     assert!(run("sipg@factor=0.9").warnings.iter().any(|w| w.contains("bound")));
     assert!(run("sipg@factor=1").warnings.is_empty() && run("nipg@factor=0.1").warnings.is_empty());
-}
-
-/// Rows have the labels that the user wrote, so that a factor can be told from another that is default.
-#[test]
-fn a_default_factor_stands_in_rows_beside_others() {
-    let written = ["wopsip@factor=1", "wopsip@factor=100"];
-    let schemes = NamedScheme::list(written).unwrap();
-    let study = Study::<2>::new(scenes::radial(1.0)).levels([4]);
-    let report = schemes.iter().fold(study, Study::named_scheme).run().unwrap();
-    let labels: Vec<&str> = report.rows.iter().map(|row| &row.label[..]).collect();
-    assert_eq!(labels, written);
 }
 
 #[test]

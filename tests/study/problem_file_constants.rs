@@ -113,6 +113,6 @@ fn mistakes_in_constants_are_found_where_they_are() {
     let text = format!("{BOX}{SIDES}");
     let expected = "there is no constant `b` to set: the file has no [constants]";
     let kind = check(&text, &[("b", 1.0)], (1, 1), expected);
-    assert_eq!(kind, ProblemFileErrorKind::Constant);
+    assert_eq!(kind, ProblemFileErrorKind::Text);
     check(&format!("{BOX}constants = 1\n{SIDES}"), &[], (2, 13), "`constants` must be a table");
 }

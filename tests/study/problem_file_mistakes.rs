@@ -122,7 +122,7 @@ fn mistakes_are_found_where_they_are() {
         (
             format!("{BOX}[coefficient]\ndefault = [[1, \"2 * x\"], [\"2 * x\", 1]]\n{SIDES}"),
             (3, 11),
-            "coefficient.default: the least pivot is -",
+            "coefficient.default: the least eigenvalue is -",
         ),
         (
             format!("{BOX}[boundary.left]\nkind = \"neumann\"\nvalue = 1\n"),
@@ -247,7 +247,7 @@ fn mistakes_are_found_where_they_are() {
     assert_eq!(error.kind, ProblemFileErrorKind::Unreadable);
     let text = format!("{BOX}{SIDES}[boundary.dirichlet]\n");
     let error = refused(&folder.file("two.toml", &text));
-    assert_eq!(error.kind, ProblemFileErrorKind::Missing);
+    assert_eq!(error.kind, ProblemFileErrorKind::Text);
     assert!(error.place.is_some(), "{error}");
 }
 

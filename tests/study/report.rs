@@ -216,7 +216,7 @@ fn plots_show_promised_orders_and_no_single_points() {
     let drawn = lines(all.clone());
     assert!(has(&drawn, "orders promised by theory"));
     // an order that is no whole number has its own slope
-    all.iter_mut().for_each(|r| r.expected_order = ExpectedOrders::default().with_h1(1.5));
+    all.iter_mut().for_each(|r| r.expected_order = ExpectedOrders { l2: None, h1: Some(1.5) });
     assert!(has(&lines(all.clone()), "1.5"));
     all.iter_mut().for_each(|r| r.expected_order = ExpectedOrders::default());
     assert!(!has(&lines(all.clone()), "orders promised by theory"));

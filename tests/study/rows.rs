@@ -10,7 +10,8 @@ pub fn row(scene: &str, scheme: &str, level: usize) -> Row {
     let h = 1.0 / level as f64;
     let mut row = Row::new(scene, 2, scheme, level, Outcome::Converged);
     row.constraint = "vertices".into();
-    row.parameters = PenaltyParameters::default().with_sigma(6.5).with_rule("proven");
+    row.parameters =
+        PenaltyParameters { sigma: Some(6.5), eta: None, rule: Some("proven".to_owned()) };
     row.solver = "active-set".into();
     row.linear = "direct".into();
     row.cells = 2 * level * level;
@@ -23,7 +24,7 @@ pub fn row(scene: &str, scheme: &str, level: usize) -> Row {
     row.contact.multiplier_l1 = Some(0.3 * h);
     row.contact.multiplier_l2 = Some(0.5 * h.sqrt());
     row.contact.contact_area_error = Some(0.2 * h);
-    row.expected_order = ExpectedOrders::default().with_l2(2.0).with_h1(1.0);
+    row.expected_order = ExpectedOrders { l2: Some(2.0), h1: Some(1.0) };
     row.objective = Some(-0.1 - h / 3.0);
     row.active = Some(level);
     row.iterations.outer = Some(3);

@@ -48,8 +48,8 @@ fn tables_are_aligned_and_say_what_failed() {
     rows[3].status = Outcome::IterationLimit;
     rows[3].error = Errors::default();
     rows[3].warnings = vec!["eta below its bound".into()];
-    rows[2].expected_order = ExpectedOrders::default().with_h1(0.5);
-    rows[3].expected_order = ExpectedOrders::default().with_h1(0.5);
+    rows[2].expected_order = ExpectedOrders { l2: None, h1: Some(0.5) };
+    rows[3].expected_order = ExpectedOrders { l2: None, h1: Some(0.5) };
     fill_orders(&mut rows);
     let expected = "\
 radial-2d: solver active-set/direct; expected order L2 2 H1 1 (p1), H1 0.5 (wopsip)
@@ -95,7 +95,7 @@ fn with_local_orders(scheme: &str, orders: &[f64]) -> Vec<Row> {
         let mut row = row("radial-2d", scheme, 8 << k);
         error /= 2_f64.powf(*order);
         (row.error.l2, row.error.h1) = (None, Some(error));
-        row.expected_order = ExpectedOrders::default().with_h1(1.5);
+        row.expected_order = ExpectedOrders { l2: None, h1: Some(1.5) };
         rows.push(row);
     }
     rows
@@ -108,7 +108,7 @@ fn verdicts_do_not_depend_on_the_last_level() {
     let swing = [0.82, 2.20, 0.81, 1.54];
     let verdict = |orders: &[f64], promised: f64| {
         let mut rows = with_local_orders("p2", orders);
-        let promise = ExpectedOrders::default().with_h1(promised);
+        let promise = ExpectedOrders { l2: None, h1: Some(promised) };
         rows.iter_mut().for_each(|row| row.expected_order = promise);
         report(rows).observed_orders()[0].verdict(ErrorNorm::H1, 0.1)
     };
@@ -143,7 +143,7 @@ fn kept_promises_pass() {
 #[test]
 fn orders_above_the_promise_keep_it() {
     let mut rows = four_levels("p1");
-    rows.iter_mut().for_each(|r| r.expected_order = ExpectedOrders::default().with_h1(0.5));
+    rows.iter_mut().for_each(|r| r.expected_order = ExpectedOrders { l2: None, h1: Some(0.5) });
     assert_eq!(report(rows).assert_orders(0.0), Ok(()));
 }
 

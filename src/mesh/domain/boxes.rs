@@ -81,23 +81,13 @@ impl<const D: usize> BoxDomain<D> {
     }
 }
 
-/// The permutations of the axes. Each is a path along edges from the lowest to the highest corner of a
+/// The permutations of the axes in each dimension. Each is a path along edges from the lowest to the highest corner of a
 /// box, and the corners of the path are the vertices of one simplex.
-fn paths<const D: usize>() -> Vec<[usize; D]> {
-    let mut paths: Vec<Vec<usize>> = vec![Vec::new()];
-    for _ in 0..D {
-        paths = paths
-            .into_iter()
-            .flat_map(|p| {
-                (0..D)
-                    .filter(|k| !p.contains(k))
-                    .map(|k| [&p[..], &[k]].concat())
-                    .collect::<Vec<_>>()
-            })
-            .collect();
-    }
-    paths.into_iter().map(|p| array_of(|k| p[k])).collect()
-}
+const PATHS: [&[[usize; 3]]; 3] = [
+    &[[0, 0, 0]],
+    &[[0, 1, 0], [1, 0, 0]],
+    &[[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]],
+];
 
 impl<const D: usize> Mesh<D> {
     /// A box cut into `counts[k]` small boxes along axis `k`, each cut into `D!` simplices around
@@ -121,7 +111,7 @@ impl<const D: usize> Mesh<D> {
                 return Err(MeshError::parameter("side of the box", side, "positive and finite"));
             }
         }
-        let paths = paths::<D>();
+        let paths = PATHS[D - 1];
         let product = |add: usize| {
             counts.iter().try_fold(1_usize, |n, &c| n.checked_mul(c.checked_add(add)?))
         };
@@ -140,7 +130,7 @@ impl<const D: usize> Mesh<D> {
         let vertices = (0..n_vertices)
             .map(|v| Point::from_fn(|k, _| coordinate(k, v / strides[k] % (counts[k] + 1))))
             .collect();
-        let (cells, boundary) = cells_and_boundary(domain, counts, strides, &paths);
+        let (cells, boundary) = cells_and_boundary(domain, counts, strides, paths);
         let is_supported = boundary.iter().any(|f| f.condition == BoundaryCondition::Dirichlet);
         let side = |k: usize| BoundaryGroup {
             names: vec![SIDES[k].to_owned()],
@@ -166,7 +156,7 @@ fn cells_and_boundary<const D: usize>(
     domain: &BoxDomain<D>,
     counts: [usize; D],
     strides: [usize; D],
-    paths: &[[usize; D]],
+    paths: &[[usize; 3]],
 ) -> (Vec<u32>, Vec<BoundaryFacet>) {
     let n_boxes: usize = counts.iter().product();
     let mut cells = Vec::with_capacity(n_boxes * paths.len() * (D + 1));
@@ -178,7 +168,7 @@ fn cells_and_boundary<const D: usize>(
             let cell = (cells.len() / (D + 1)) as u32;
             let mut vertex = lowest;
             cells.push(vertex as u32);
-            for &axis in path {
+            for &axis in &path[..D] {
                 vertex += strides[axis];
                 cells.push(vertex as u32);
             }

@@ -25,7 +25,7 @@ type Entities = HashMap<(usize, i64), Vec<i64>>;
 pub(super) fn read_contents(bytes: Vec<u8>) -> Result<Contents, GmshError> {
     let source = &mut Source::new(&bytes);
     read_header(source)?;
-    let (is_binary, lists_by_group) = (source.is_binary(), !source.is_four);
+    let (is_binary, lists_by_group) = (source.is_binary, !source.is_four);
     let mut contents = Contents { is_binary, lists_by_group, ..Contents::default() };
     let (mut entities, mut has_nodes, mut has_elements) = (Entities::new(), false, false);
     while let Some(name) = open_section(source)? {
@@ -163,7 +163,7 @@ fn read_entities(source: &mut Source) -> Result<Entities, GmshError> {
             let mut groups = Vec::new();
             for _ in 0..source.count("the number of physical groups of an entity")? {
                 // the sign is an orientation
-                groups.push(source.integer("the tag of a physical group")?.abs());
+                groups.push(source.integer("the tag of a physical group")?.saturating_abs());
             }
             if dimension > 0 {
                 let bounding = source.count("the number of bounding entities")?;
@@ -268,7 +268,7 @@ fn read_elements(source: &mut Source, contents: &mut Contents) -> Result<(), Gms
         let read_tag = |source: &mut Source| {
             Ok::<_, GmshError>((source.offset(), source.tag("the tag of an element")?))
         };
-        let first = if source.is_binary() { None } else { Some(read_tag(source)?) };
+        let first = if source.is_binary { None } else { Some(read_tag(source)?) };
         let of_type = read_type(source)?;
         let count = match first {
             Some(_) => 1,
@@ -278,8 +278,11 @@ fn read_elements(source: &mut Source, contents: &mut Contents) -> Result<(), Gms
         for _ in 0..count {
             let element = first.map_or_else(|| read_tag(source), Ok)?;
             // the first tag is the physical group, zero for none; the others tell the entity and the partitions
-            let group =
-                if tags > 0 { source.integer("the tag of a physical group")?.abs() } else { 0 };
+            let group = if tags > 0 {
+                source.integer("the tag of a physical group")?.saturating_abs()
+            } else {
+                0
+            };
             source.skip(tags.saturating_sub(1), 4, "a tag of an element")?;
             let groups = if group == 0 { &[][..] } else { &[group] };
             read_element(source, contents, (of_type, element), groups)?;

@@ -9,14 +9,6 @@ use std::str::FromStr;
 use super::error::{GmshError, GmshErrorKind, place};
 use crate::input::excerpt;
 
-/// The encoding of numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Encoding {
-    Text,
-    LittleEndian,
-    BigEndian,
-}
-
 /// The bytes of a file, and how far they are read.
 pub(super) struct Source<'a> {
     bytes: &'a [u8],
@@ -24,8 +16,8 @@ pub(super) struct Source<'a> {
     at: usize,
     /// The first byte of the word or number read last.
     last: usize,
-    /// The encoding of the numbers of the sections.
-    encoding: Encoding,
+    /// Whether the numbers of the sections are bytes, the lowest first.
+    pub is_binary: bool,
     /// Whether the version is 4.1, not 2.2: tags have eight bytes, not four.
     pub is_four: bool,
     /// The section that is being read.
@@ -36,11 +28,7 @@ impl<'a> Source<'a> {
     pub fn new(bytes: &'a [u8]) -> Self {
         // Editors put a byte order mark in front of text.
         let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
-        let (encoding, section) = (Encoding::Text, String::new());
-        Source { bytes, at, last: at, encoding, is_four: false, section }
-    }
-    pub fn is_binary(&self) -> bool {
-        self.encoding != Encoding::Text
+        Source { bytes, at, last: at, is_binary: false, is_four: false, section: String::new() }
     }
     /// The offset of the next byte to read.
     pub fn offset(&self) -> usize {
@@ -57,7 +45,7 @@ impl<'a> Source<'a> {
 
     /// An error at the word or number read last.
     pub fn error(&self, kind: GmshErrorKind, message: &str) -> GmshError {
-        let place = place(self.last, self.bytes, self.is_binary());
+        let place = place(self.last, self.bytes, self.is_binary);
         GmshError::new(kind, format!("{place}: {message}"))
     }
     /// An error about something else than what is expected.
@@ -107,14 +95,14 @@ impl<'a> Source<'a> {
         if !word.is_empty() {
             return Err(self.unexpected_word("the end of the line", word));
         }
-        if self.is_binary() {
+        if self.is_binary {
             self.rest_of_line();
         }
         Ok(())
     }
     /// Moves to the line of the next record of text, after the end of that of the last one.
     pub fn record(&mut self, what: &str) -> Result<(), GmshError> {
-        if self.is_binary() {
+        if self.is_binary {
             return Ok(());
         }
         self.end_line()?;
@@ -144,18 +132,14 @@ impl<'a> Source<'a> {
         self.end_line()?;
         Ok(count)
     }
-    /// A number in the encoding of the file, by the functions that make it of bytes in little and big endian.
+    /// A number in the encoding of the file, by the function that makes it of bytes.
     #[inline(always)]
     fn number<V: FromStr, const N: usize>(
         &mut self,
         expected: &str,
-        [little, big]: [fn([u8; N]) -> V; 2],
+        of_bytes: fn([u8; N]) -> V,
     ) -> Result<V, GmshError> {
-        match self.encoding {
-            Encoding::Text => self.text(expected),
-            Encoding::LittleEndian => self.array(expected).map(little),
-            Encoding::BigEndian => self.array(expected).map(big),
-        }
+        if self.is_binary { self.array(expected).map(of_bytes) } else { self.text(expected) }
     }
     fn array<const N: usize>(&mut self, expected: &str) -> Result<[u8; N], GmshError> {
         self.last = self.at;
@@ -165,14 +149,12 @@ impl<'a> Source<'a> {
     /// An unsigned number of eight bytes.
     #[inline]
     pub fn count(&mut self, expected: &str) -> Result<u64, GmshError> {
-        self.number(expected, [u64::from_le_bytes, u64::from_be_bytes])
+        self.number(expected, u64::from_le_bytes)
     }
     /// An integer of four bytes.
     #[inline]
     pub fn integer(&mut self, expected: &str) -> Result<i64, GmshError> {
-        let of_bytes: [fn([u8; 4]) -> i64; 2] =
-            [|b| i32::from_le_bytes(b).into(), |b| i32::from_be_bytes(b).into()];
-        self.number(expected, of_bytes)
+        self.number(expected, |bytes| i32::from_le_bytes(bytes).into())
     }
     /// The tag of a node or element.
     #[inline]
@@ -187,7 +169,7 @@ impl<'a> Source<'a> {
     pub fn point(&mut self, node: u64) -> Result<[f64; 3], GmshError> {
         let mut point = [0.0; 3];
         for (x, name) in point.iter_mut().zip(["coordinate x", "coordinate y", "coordinate z"]) {
-            *x = self.number(name, [f64::from_le_bytes, f64::from_be_bytes])?;
+            *x = self.number(name, f64::from_le_bytes)?;
             if !x.is_finite() {
                 let message = format!(
                     "{name} of node {node} is {x}; coordinates must be finite, correct the geometry and mesh again"
@@ -199,7 +181,7 @@ impl<'a> Source<'a> {
     }
     /// Skips `count` numbers, each of `size` bytes in a binary file.
     pub fn skip(&mut self, count: u64, size: usize, expected: &str) -> Result<(), GmshError> {
-        if !self.is_binary() {
+        if !self.is_binary {
             return (0..count).try_for_each(|_| self.text::<f64>(expected).map(|_| ()));
         }
         let length = usize::try_from(count).ok().and_then(|count| count.checked_mul(size));
@@ -247,14 +229,13 @@ impl<'a> Source<'a> {
     }
     /// Reads the byte order mark of a binary file.
     pub fn read_byte_order(&mut self) -> Result<(), GmshError> {
-        self.encoding = Encoding::LittleEndian;
+        self.is_binary = true;
         self.rest_of_line();
-        let mark = "the integer 1 as byte order mark (was the file copied as text?)";
-        self.encoding = match self.array(mark)? {
-            [1, 0, 0, 0] => Encoding::LittleEndian,
-            [0, 0, 0, 1] => Encoding::BigEndian,
-            found => return Err(self.unexpected(mark, format_args!("bytes {found:?}"))),
-        };
-        Ok(())
+        let mark =
+            "the integer 1 as byte order mark, lowest byte first (was the file copied as text?)";
+        match self.array(mark)? {
+            [1, 0, 0, 0] => Ok(()),
+            found => Err(self.unexpected(mark, format_args!("bytes {found:?}"))),
+        }
     }
 }

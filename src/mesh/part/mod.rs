@@ -6,8 +6,6 @@ mod refine;
 
 pub use extent::Extent;
 
-use std::fmt;
-
 use crate::mesh::boundary::BoundaryFacet;
 use crate::mesh::error::MeshError;
 use crate::mesh::facets::Neighbours;
@@ -39,16 +37,6 @@ impl Layers {
     /// So many layers of cells that share vertices.
     pub const fn across_vertices(count: usize) -> Self {
         Self { count, across: Across::Vertices }
-    }
-}
-
-impl fmt::Display for Layers {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let across = match self.across {
-            Across::Facets => "facets",
-            Across::Vertices => "vertices",
-        };
-        write!(f, "{} across {across}", self.count)
     }
 }
 

@@ -72,7 +72,7 @@ impl<const D: usize> Part<D> {
         let most = self.layers.refined(D, layers.across);
         if layers.count > most {
             let allowed = format!("at most {most}; take more layers of the coarse mesh");
-            return Err(MeshError::parameter("layers of a refined part", layers, allowed));
+            return Err(MeshError::parameter("layers of a refined part", layers.count, allowed));
         }
         let last = self.cells.last().map_or(0, |&cell| cell);
         if last >= CELL_LIMIT >> D {

@@ -161,7 +161,7 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
     /// Gives the mesh the shapes of its boundary groups.
     pub fn put_shapes(&self, domain: &Domain<D>, mut mesh: Mesh<D>) -> Done<Mesh<D>> {
         for (group, (formula, offset)) in &self.shapes {
-            let kind = ProblemFileErrorKind::Shape;
+            let kind = ProblemFileErrorKind::Mesh;
             if !domain.is_mesh() {
                 let message = format!(
                     "boundary.{group}.shape: the sides of a box are flat; a curved boundary needs a mesh"
@@ -194,7 +194,7 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
                     "boundary.{group}.shape: facets of the group lie on both sides of it, where a gap has two normals; give each side a group of its own"
                 );
                 let offset = shape.map_or(0, |(_, offset)| *offset);
-                self.source.error(offset, ProblemFileErrorKind::Shape, message)
+                self.source.error(offset, ProblemFileErrorKind::Mesh, message)
             })?;
             self.problem.gap.give(group, datum);
         }

@@ -28,6 +28,9 @@ const AGREEMENT: f64 = 1e-2;
 /// The table of data of the boundary.
 pub(super) const BOUNDARY: &str = "boundary";
 
+/// The table of the exact solution, whose entries are those of no group.
+pub(super) const EXACT: &str = "exact";
+
 /// A datum with its place, for checks.
 pub(super) struct Entry<const D: usize> {
     pub table: &'static str,
@@ -57,9 +60,9 @@ type Done = Result<(), ProblemFileError>;
 impl<const D: usize> Checks<'_, '_, D> {
     /// Holds names and values against a mesh.
     pub fn run(&self, mesh: &Mesh<D>) -> Done {
-        for entry in self.entries.iter().filter(|entry| entry.group != DEFAULT) {
+        for entry in self.entries.iter().filter(|e| e.group != DEFAULT && e.table != EXACT) {
             if let Some(message) = unknown_name(mesh, &entry.group, entry.table == BOUNDARY) {
-                let kind = ProblemFileErrorKind::UnknownGroup;
+                let kind = ProblemFileErrorKind::Group;
                 return Err(self.source.error(entry.offset, kind, message));
             }
         }
@@ -69,7 +72,7 @@ impl<const D: usize> Checks<'_, '_, D> {
                 let message = format!(
                     "the boundary group `{name}` of the mesh is missing: add a table [boundary.{name}] with its kind, dirichlet, neumann, robin, friction or contact, or [boundary.default] for groups without one, if its kind is that of the name"
                 );
-                return Err(self.source.error(0, ProblemFileErrorKind::MissingBoundary, message));
+                return Err(self.source.error(0, ProblemFileErrorKind::Group, message));
             }
         }
         self.entries.iter().try_for_each(|entry| self.check_values(entry, mesh))?;
@@ -101,7 +104,7 @@ impl<const D: usize> Checks<'_, '_, D> {
                     describe_point(&x),
                     0.5 * (one + other)
                 );
-                return Err(self.source.error(offset, ProblemFileErrorKind::Gradient, message));
+                return Err(self.source.error(offset, ProblemFileErrorKind::Value, message));
             }
         }
         Ok(())
@@ -133,6 +136,7 @@ impl<const D: usize> Checks<'_, '_, D> {
                 let of_table = self.entries.iter().filter(|other| other.table == entry.table);
                 !of_table.into_iter().any(|other| names.contains(&other.group))
             }
+            _ if entry.table == EXACT => true,
             group => names.iter().any(|name| name == group),
         };
         let check_in = |cell: usize, local: Option<usize>, rule: &[[f64; 4]]| {

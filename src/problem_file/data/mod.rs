@@ -19,7 +19,7 @@ use crate::problem::{Datum, Given, Problem, Tensor};
 use crate::real::{Matrix, Point};
 use crate::scenes::{AnyScene, Scene};
 use boundary::{OnGroup, Shape};
-use check::{Allowed, Checks, Entry, FINITE, NOT_NEGATIVE, POSITIVE};
+use check::{Allowed, Checks, EXACT, Entry, FINITE, NOT_NEGATIVE, POSITIVE};
 
 const KEYS: [&str; 11] = [
     "name",
@@ -83,7 +83,8 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
                 let (tensor, value) = tensor::read(source, group, value)?;
                 self.problem.tensor.give(group, tensor);
                 self.problem.coefficient.give(group, Datum::Constant(1.0));
-                let entry = entry(": the least pivot", offset, POSITIVE, &Formula::Number(1.0));
+                let entry =
+                    entry(": the least eigenvalue", offset, POSITIVE, &Formula::Number(1.0));
                 self.entries.push(Entry { value, ..entry });
                 continue;
             }
@@ -149,7 +150,7 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
         let mut read = |group: &str, value: &Value<'t>, at_vertices| {
             let formula = source.formula(group, value, &VARIABLES[0][..D])?;
             let (group, offset, value) = (group.to_owned(), value.span().start, formula.flux());
-            let (table, key, allowed) = ("exact", "", FINITE);
+            let (table, key, allowed) = (EXACT, "", FINITE);
             self.entries.push(Entry { table, group, key, at_vertices, offset, allowed, value });
             Ok(formula.datum::<D>())
         };

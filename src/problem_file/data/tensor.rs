@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use nalgebra::DMatrix;
+
 use crate::problem::{BoundaryFlux, Tensor};
 use crate::problem_file::error::ProblemFileError;
 use crate::problem_file::expression::VARIABLES;
@@ -9,24 +11,15 @@ use crate::problem_file::formula::Formula;
 use crate::problem_file::table::{Source, Value};
 use crate::real::{Matrix, Point};
 
-/// The least pivot of Gaussian elimination up to the first that is not positive: a symmetric matrix is positive definite
-/// if it is.
-fn least_pivot<const D: usize>(mut of: Matrix<D>) -> f64 {
-    let mut least = f64::INFINITY;
-    for k in 0..D {
-        let pivot = of[(k, k)];
-        least = least.min(pivot);
-        if pivot.is_nan() || pivot <= 0.0 {
-            return pivot;
-        }
-        for (i, j) in (k + 1..D).flat_map(|i| (k + 1..D).map(move |j| (i, j))) {
-            of[(i, j)] -= of[(i, k)] * of[(k, j)] / pivot;
-        }
+/// The least eigenvalue of a symmetric matrix; not a number if an entry is none.
+fn least_eigenvalue<const D: usize>(of: Matrix<D>) -> f64 {
+    match of.iter().all(|entry| entry.is_finite()) {
+        true => DMatrix::from_fn(D, D, |i, j| of[(i, j)]).symmetric_eigenvalues().min(),
+        false => f64::NAN,
     }
-    least
 }
 
-/// Reads the tensor of a region, `[[2, 0], [0, 1]]`, with its least pivot, which must be positive.
+/// Reads the tensor of a region, `[[2, 0], [0, 1]]`, with its least eigenvalue, which must be positive.
 pub(super) fn read<'t, const D: usize>(
     source: &Source<'t>,
     group: &str,
@@ -60,5 +53,5 @@ pub(super) fn read<'t, const D: usize>(
         false => Tensor::function(at),
     };
     let of = tensor.clone();
-    Ok((tensor, BoundaryFlux::Function(Arc::new(move |x, _| least_pivot(of.at(x))))))
+    Ok((tensor, BoundaryFlux::Function(Arc::new(move |x, _| least_eigenvalue(of.at(x))))))
 }

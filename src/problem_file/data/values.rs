@@ -63,10 +63,7 @@ pub(super) fn check<const D: usize>(
 ) -> Done {
     for (name, value, offset) in wanted {
         if let Some(fault) = value.fault(problem, mesh) {
-            let kind = match value {
-                ValueOf::At(_) => ProblemFileErrorKind::Value,
-                _ => ProblemFileErrorKind::UnknownGroup,
-            };
+            let kind = ProblemFileErrorKind::Group;
             return Err(source.error(*offset, kind, format!("values.{name}: {fault}")));
         }
     }

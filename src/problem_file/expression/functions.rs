@@ -5,35 +5,47 @@ pub(super) type One = fn(f64) -> f64;
 /// A function of two numbers.
 pub(super) type Two = fn(f64, f64) -> f64;
 
-pub(super) const FUNCTIONS: [(&str, One); 21] = [
-    ("abs", f64::abs),
-    ("acos", f64::acos),
-    ("asin", f64::asin),
-    ("atan", f64::atan),
-    ("cbrt", f64::cbrt),
-    ("ceil", f64::ceil),
-    ("cos", f64::cos),
-    ("cosh", f64::cosh),
-    ("exp", f64::exp),
-    ("floor", f64::floor),
-    ("ln", f64::ln),
-    ("log", f64::ln),
-    ("log10", f64::log10),
-    ("log2", f64::log2),
-    ("round", f64::round),
-    ("sign", sign),
-    ("sin", f64::sin),
-    ("sinh", f64::sinh),
-    ("sqrt", f64::sqrt),
-    ("tan", f64::tan),
-    ("tanh", f64::tanh),
+/// A function by how many arguments it takes.
+#[derive(Clone, Copy)]
+pub(super) enum Function {
+    One(One),
+    Two(Two),
+    /// Of two and more numbers.
+    Many(Two),
+    /// A condition and two values.
+    If,
+}
+use Function::{If, Many, Two as Pair};
+
+pub(super) const FUNCTIONS: [(&str, Function); 27] = [
+    ("abs", Function::One(f64::abs)),
+    ("acos", Function::One(f64::acos)),
+    ("asin", Function::One(f64::asin)),
+    ("atan", Function::One(f64::atan)),
+    ("cbrt", Function::One(f64::cbrt)),
+    ("ceil", Function::One(f64::ceil)),
+    ("cos", Function::One(f64::cos)),
+    ("cosh", Function::One(f64::cosh)),
+    ("exp", Function::One(f64::exp)),
+    ("floor", Function::One(f64::floor)),
+    ("ln", Function::One(f64::ln)),
+    ("log", Function::One(f64::ln)),
+    ("log10", Function::One(f64::log10)),
+    ("log2", Function::One(f64::log2)),
+    ("round", Function::One(f64::round)),
+    ("sign", Function::One(sign)),
+    ("sin", Function::One(f64::sin)),
+    ("sinh", Function::One(f64::sinh)),
+    ("sqrt", Function::One(f64::sqrt)),
+    ("tan", Function::One(f64::tan)),
+    ("tanh", Function::One(f64::tanh)),
+    ("atan2", Pair(f64::atan2)),
+    ("hypot", Pair(f64::hypot)),
+    ("pow", Pair(f64::powf)),
+    ("max", Many(f64::max)),
+    ("min", Many(f64::min)),
+    ("if", If),
 ];
-
-pub(super) const FUNCTIONS_OF_TWO: [(&str, Two); 3] =
-    [("atan2", f64::atan2), ("hypot", f64::hypot), ("pow", f64::powf)];
-
-/// Functions of two and more numbers.
-pub(super) const FUNCTIONS_OF_MANY: [(&str, Two); 2] = [("max", f64::max), ("min", f64::min)];
 
 pub(super) const CONSTANTS: [(&str, f64); 2] =
     [("e", std::f64::consts::E), ("pi", std::f64::consts::PI)];

@@ -1,6 +1,6 @@
 //! The meaning of names: variables, constants and functions.
 
-use super::functions::{CONSTANTS, FUNCTIONS, FUNCTIONS_OF_MANY, FUNCTIONS_OF_TWO};
+use super::functions::{CONSTANTS, FUNCTIONS, Function};
 use super::node::Node;
 
 /// Why an expression cannot be read, and where: an offset in bytes.
@@ -27,13 +27,11 @@ pub(crate) const VARIABLES: [[&str; 3]; 2] = [["x", "y", "z"], ["nx", "ny", "nz"
 pub(crate) fn use_of_name(name: &str) -> Option<&'static str> {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let starts = name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
-    let of_two = FUNCTIONS_OF_TWO.iter().chain(&FUNCTIONS_OF_MANY).map(|(name, _)| *name);
-    let mut functions = FUNCTIONS.iter().map(|(name, _)| *name).chain(of_two).chain(["if"]);
     if VARIABLES.concat().contains(&name) {
         Some("that is a coordinate")
     } else if CONSTANTS.iter().any(|(known, _)| *known == name) {
         Some("every expression has this number")
-    } else if functions.any(|known| known == name) {
+    } else if FUNCTIONS.iter().any(|(known, _)| *known == name) {
         Some("that is a function")
     } else if !starts || !name.chars().all(is_plain) {
         Some("a name has letters, digits and _, no digit first")
@@ -66,39 +64,26 @@ impl Names<'_> {
 
 /// A function with its arguments.
 pub(super) fn call(name: &str, arguments: Vec<Node>) -> Result<Node, String> {
+    let Some((_, function)) = FUNCTIONS.iter().find(|(known, _)| *known == name) else {
+        let known = FUNCTIONS.map(|(name, _)| name).join(", ");
+        return Err(format!("there is no function `{name}`; there are {known}"));
+    };
     let n = arguments.len();
-    let wrong_number = |expected: &str| Err(format!("{name} takes {expected}, not {n}"));
+    let (fits, expected) = match function {
+        Function::One(_) => (n == 1, "one argument"),
+        Function::Two(_) => (n == 2, "two arguments"),
+        Function::Many(_) => (n >= 2, "two or more arguments"),
+        Function::If => (n == 3, "a condition and two values"),
+    };
+    if !fits {
+        return Err(format!("{name} takes {expected}, not {n}"));
+    }
     let mut arguments = arguments.into_iter();
-    let mut next = || arguments.next().unwrap_or(Node::Number(f64::NAN));
-    if let Some((_, f)) = FUNCTIONS.iter().find(|(known, _)| *known == name) {
-        return if n == 1 {
-            Ok(Node::One(*f, Box::new(next())))
-        } else {
-            wrong_number("one argument")
-        };
-    }
-    if let Some((_, f)) = FUNCTIONS_OF_TWO.iter().find(|(known, _)| *known == name) {
-        return if n == 2 {
-            Ok(Node::two(*f, next(), next()))
-        } else {
-            wrong_number("two arguments")
-        };
-    }
-    if let Some((_, f)) = FUNCTIONS_OF_MANY.iter().find(|(known, _)| *known == name) {
-        if n < 2 {
-            return wrong_number("two or more arguments");
-        }
-        let first = next();
-        return Ok(arguments.fold(first, |a, b| Node::two(*f, a, b)));
-    }
-    if name == "if" {
-        return match n {
-            3 => Ok(Node::If(Box::new((next(), next(), next())))),
-            _ => wrong_number("a condition and two values"),
-        };
-    }
-    let of_many = FUNCTIONS_OF_TWO.iter().chain(&FUNCTIONS_OF_MANY).map(|(name, _)| *name);
-    let known: Vec<&str> =
-        FUNCTIONS.iter().map(|(name, _)| *name).chain(of_many).chain(["if"]).collect();
-    Err(format!("there is no function `{name}`; there are {}", known.join(", ")))
+    let mut next = || arguments.next().expect("so many arguments were counted");
+    let first = next();
+    Ok(match *function {
+        Function::One(f) => Node::One(f, Box::new(first)),
+        Function::Two(f) | Function::Many(f) => arguments.fold(first, |a, b| Node::two(f, a, b)),
+        Function::If => Node::If(Box::new((first, next(), next()))),
+    })
 }

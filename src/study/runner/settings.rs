@@ -11,7 +11,7 @@ use crate::error::Error;
 use crate::inequality::{InequalitySolver, StepCounter};
 use crate::nested::Solved;
 use crate::problem::Problem;
-use crate::scheme::{NamedScheme, Scheme, SchemeOptions};
+use crate::scheme::{NamedScheme, Scheme};
 #[cfg(feature = "report")]
 use crate::study::journal::Journal;
 use crate::study::reference::Reference;
@@ -50,18 +50,18 @@ impl<'a, const D: usize> Study<'a, D> {
     /// Adds a scheme, with the constraint set of the problem.
     #[must_use]
     pub fn scheme(self, scheme: impl Scheme<D> + 'a) -> Self {
-        self.entry(Arc::new(scheme), None, None)
+        self.entry(Arc::new(scheme), None)
     }
     /// Adds a scheme with a constraint set of its own, so that one scheme may stand beside itself with
     /// other bounds.
     #[must_use]
     pub fn scheme_on(self, scheme: impl Scheme<D> + 'a, set: impl ConstraintSet + 'static) -> Self {
-        self.entry(Arc::new(scheme), Some(Arc::new(set)), None)
+        self.entry(Arc::new(scheme), Some(Arc::new(set)))
     }
     /// Adds a scheme chosen at run time, with the constraint set of the problem.
     #[must_use]
     pub fn boxed_scheme(self, scheme: Box<dyn Scheme<D> + 'a>) -> Self {
-        self.entry(scheme.into(), None, None)
+        self.entry(scheme.into(), None)
     }
     /// Adds a scheme chosen at run time, with a constraint set of its own.
     #[must_use]
@@ -70,23 +70,21 @@ impl<'a, const D: usize> Study<'a, D> {
         scheme: Box<dyn Scheme<D> + 'a>,
         set: impl ConstraintSet + 'static,
     ) -> Self {
-        self.entry(scheme.into(), Some(Arc::new(set)), None)
+        self.entry(scheme.into(), Some(Arc::new(set)))
     }
     /// Adds a scheme as users write it; without a placement it has the constraint set of the problem.
     #[must_use]
     pub fn named_scheme(self, scheme: &NamedScheme) -> Self {
-        self.entry(scheme.make().into(), scheme.constraint_set(), scheme.shown_choices())
+        self.entry(scheme.make().into(), scheme.constraint_set())
     }
-    /// Adds a scheme. `set`, if given, replaces the constraint set of the problem; the label of the rows shows the
-    /// options `shown`.
+    /// Adds a scheme. `set`, if given, replaces the constraint set of the problem.
     fn entry(
         mut self,
         scheme: Arc<dyn Scheme<D> + 'a>,
         set: Option<Arc<dyn ConstraintSet>>,
-        shown: Option<SchemeOptions>,
     ) -> Self {
         let problem = self.problem_on(set);
-        let label = scheme.label_with(problem.constraint_set(), shown);
+        let label = scheme.label_on(problem.constraint_set());
         self.entries.push(Entry { scheme, problem, label });
         self
     }

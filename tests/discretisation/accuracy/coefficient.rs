@@ -177,14 +177,14 @@ fn promises_know_the_coefficient() {
     let order = |setting: &Setting| -> ExpectedOrders {
         Scheme::<2>::expected_orders(&ConformingP2, setting)
     };
-    let smooth = Setting::new(2, Regularity::smooth()).with_regular_dual(true);
+    let smooth = Setting { regular_dual: true, ..Setting::new(2, Regularity::smooth()) };
     assert_eq!(order(&smooth).h1, Some(2.0));
-    assert_eq!(order(&smooth.with_coefficient(true)).h1, Some(1.0));
+    assert_eq!(order(&Setting { coefficient: true, ..smooth }).h1, Some(1.0));
     let stated = Setting::new(2, Regularity::smooth().with_coefficient(2.0));
-    assert_eq!(order(&stated.with_coefficient(true)).h1, Some(2.0));
+    assert_eq!(order(&Setting { coefficient: true, ..stated }).h1, Some(2.0));
     // linears see one value in each cell, which is enough for their order
     let linears: ExpectedOrders =
-        Scheme::<2>::expected_orders(&ConformingP1, &smooth.with_coefficient(true));
+        Scheme::<2>::expected_orders(&ConformingP1, &Setting { coefficient: true, ..smooth });
     assert_eq!(linears.h1, Some(1.0));
 }
 
@@ -192,7 +192,7 @@ fn promises_know_the_coefficient() {
 #[test]
 fn promises_of_quadratics_end_at_three_halves_under_an_inequality() {
     let smooth = Setting::new(2, Regularity::smooth());
-    for setting in [smooth.with_obstacle(true), smooth.with_contact(true)] {
+    for setting in [Setting { obstacle: true, ..smooth }, Setting { contact: true, ..smooth }] {
         let order: ExpectedOrders = Scheme::<2>::expected_orders(&ConformingP2, &setting);
         assert_eq!(order.h1, Some(1.5));
     }

@@ -121,7 +121,7 @@ fn refusals_name_what_the_element_offers() {
 fn promises_of_broken_schemes_are_those_that_are_proven() {
     fn h1<const D: usize>(name: &str, sobolev: f64, [obstacle, contact]: [bool; 2]) -> Option<f64> {
         let setting = Setting::new(D, Regularity::new(sobolev));
-        let setting = setting.with_obstacle(obstacle).with_contact(contact);
+        let setting = Setting { obstacle, contact, ..setting };
         let scheme = scheme_by_name::<D>(name, &Default::default()).unwrap();
         scheme.expected_orders(&setting).h1
     }
@@ -146,7 +146,7 @@ fn promises_of_broken_schemes_are_those_that_are_proven() {
 /// On the elements that have them natively, sets keep the orders that nodes have.
 #[test]
 fn orders_remain_where_the_set_is_that_of_the_nodes() {
-    let smooth = Setting::new(2, Regularity::new(2.5)).with_obstacle(true);
+    let smooth = Setting { obstacle: true, ..Setting::new(2, Regularity::new(2.5)) };
     let orders = |scheme: &dyn Scheme<2>, set: &dyn ConstraintSet| {
         scheme.expected_orders_on(set, &smooth).h1
     };

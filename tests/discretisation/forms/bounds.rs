@@ -141,11 +141,11 @@ fn what_midpoints_bind_in_contact_and_promise() {
     assert!(Midpoints.on_contact(&Node::midpoint(0), 3).is_some());
     for (dimension, obstacle, contact) in [(1, false, true), (2, true, true), (3, false, false)] {
         let setting = Setting::new(dimension, Regularity::smooth());
-        assert!(Midpoints.keeps_orders(&setting.with_obstacle(obstacle).with_contact(contact)));
+        assert!(Midpoints.keeps_orders(&Setting { obstacle, contact, ..setting }));
     }
     for (dimension, obstacle, contact) in [(1, true, false), (3, true, false), (3, false, true)] {
         let setting = Setting::new(dimension, Regularity::smooth());
-        assert!(!Midpoints.keeps_orders(&setting.with_obstacle(obstacle).with_contact(contact)));
+        assert!(!Midpoints.keeps_orders(&Setting { obstacle, contact, ..setting }));
     }
 }
 

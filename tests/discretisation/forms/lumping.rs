@@ -136,7 +136,7 @@ fn a_rule_made_outside_the_crate_integrates_data() {
     // quadratics need a rule of degree four, boundary data one of degree fifteen on facets
     let reaction = DataQuadrature::default().reaction(&EdgeMidpoints);
     let error = Discretisation::new(&ConformingP2, &problem, &mesh, reaction).unwrap_err();
-    assert!(matches!(&error, Error::Quadrature(QuadratureError::NoRule(_))), "{error}");
+    assert!(matches!(&error, Error::Quadrature(_)), "{error}");
     assert!(error.to_string().contains("has no rule of degree 4 in dimension"), "{error}");
     let family = DataQuadrature::default().family(&EdgeMidpoints);
     let error = Discretisation::new(&ConformingP1, &problem, &mesh, family).unwrap_err();
@@ -164,7 +164,8 @@ fn a_rule_whose_weights_do_not_sum_to_one_is_refused() {
     let problem = Problem::new().reaction(1.0);
     let quadrature = DataQuadrature::default().reaction(&Unweighted);
     let error = Discretisation::new(&ConformingP1, &problem, &mesh, quadrature).unwrap_err();
-    assert!(matches!(error, Error::Quadrature(QuadratureError::Weights(_))), "{error}");
+    assert!(matches!(error, Error::Quadrature(_)), "{error}");
+    assert!(error.to_string().starts_with("the weights of a rule sum to 2"), "{error}");
     let error = check_quadrature(&VertexRule, 2, 2).unwrap_err();
     assert_eq!(error.kind, KitErrorKind::RuleNotExact, "{error}");
     assert!(error.to_string().contains("for degree 2 in"), "{error}");

@@ -192,11 +192,7 @@ fn extreme_binary_numbers() {
         for at in 0..bytes.len() - 8 {
             for value in [u64::MAX, 1 << 62, 1_000_000_000_000_000_000, 0x7fff_ffff_7fff_ffff, 0] {
                 let mut damaged = bytes.clone();
-                damaged[at..at + 8].copy_from_slice(&if form == Form::Big {
-                    value.to_be_bytes()
-                } else {
-                    value.to_le_bytes()
-                });
+                damaged[at..at + 8].copy_from_slice(&value.to_le_bytes());
                 survives(&damaged);
             }
         }

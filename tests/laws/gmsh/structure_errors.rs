@@ -44,7 +44,7 @@ fn unsupported_data_size() {
 
 #[test]
 fn byte_order() {
-    let mut bytes = square().four(Form::Little);
+    let mut bytes = square().four(Form::Binary);
     bytes[20] = 13;
     let error = fail::<2>(&bytes);
     is(&error, Damaged, "byte 20");
@@ -57,7 +57,7 @@ fn truncated() {
     let error = fail::<2>(&FOUR.as_bytes()[..cut]);
     is(&error, Damaged, "line 40");
     says(&error, &["section $Nodes: ", "found the end of the file"]);
-    for bytes in [square().four(Form::Little), square().two(Form::Big)] {
+    for bytes in [square().four(Form::Binary), square().two(Form::Binary)] {
         let cut = bytes.len() - 40;
         let error = fail::<2>(&bytes[..cut]);
         is(&error, Damaged, &format!("byte {cut}"));
@@ -138,7 +138,7 @@ fn absurd_counts_take_no_memory() {
     let (text, _) = change(TWO, "5", "1000000000000000000");
     let error = fail::<2>(text.as_bytes());
     is(&error, Damaged, "line 18");
-    let mut bytes = square().four(Form::Little);
+    let mut bytes = square().four(Form::Binary);
     let at = bytes.windows(7).position(|w| w == b"$Nodes\n").unwrap() + 7;
     // of blocks, and of the nodes of the first one
     for at in [at, at + 44] {

@@ -1,4 +1,4 @@
-//! A small writer of MSH 4.1 and 2.2, text and binary of both byte orders, for tests.
+//! A small writer of MSH 4.1 and 2.2, text and binary, for tests.
 
 use std::fmt::Write;
 
@@ -6,11 +6,10 @@ use std::fmt::Write;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     Text,
-    Little,
-    Big,
+    Binary,
 }
 
-pub const FORMS: [Form; 3] = [Form::Text, Form::Little, Form::Big];
+pub const FORMS: [Form; 2] = [Form::Text, Form::Binary];
 
 /// The elements of an entity.
 #[derive(Clone, Debug)]
@@ -45,8 +44,7 @@ impl Out {
     fn number(&mut self, text: impl ToString, little: &[u8]) {
         match self.form {
             Form::Text => self.text(&format!("{} ", text.to_string())),
-            Form::Little => self.bytes.extend_from_slice(little),
-            Form::Big => self.bytes.extend(little.iter().rev()),
+            Form::Binary => self.bytes.extend_from_slice(little),
         }
     }
     fn int(&mut self, value: i32) {

@@ -286,10 +286,7 @@ impl<const D: usize, const MISTAKE: usize> Element<D> for Wrong<MISTAKE> {
     fn node(&self, i: usize) -> Node {
         match Node::vertex(i) {
             _ if MISTAKE == NODE => Node::facet_mean(i),
-            right if MISTAKE == ENTITY => Node::weighted_sum(
-                Entity::Cell,
-                right.point().map(|point| (*point, 1.0)).into_iter().collect(),
-            ),
+            right if MISTAKE == ENTITY => Node::value(Entity::Cell, right.centre(D)),
             right => right,
         }
     }
