@@ -230,7 +230,7 @@ fn a_report_outlives_a_wrong_directory_and_pictures_show_the_finest_level() {
 fn the_default_request_has_two_scenes_and_both_placements() {
     let (_, report) = default_request();
     let labels = ["p1", "sipg", "wopsip", "wopsip:facet-means"];
-    let expected = ["radial-2d", "signorini-2d"].map(|scene| {
+    let expected = ["hill-2d", "signorini-halves-2d"].map(|scene| {
         labels.map(|label| [8, 16, 32, 64, 128].map(|level| (scene, label, level))).concat()
     });
     let found: Vec<(&str, &str, u64)> = rows(report)
