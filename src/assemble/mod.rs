@@ -28,5 +28,4 @@ mod weak_dirichlet;
 
 pub use data_quadrature::DataQuadrature;
 pub use discretisation::Discretisation;
-pub(crate) use discretisation::{MOST_ENTRIES, entries_at_most};
 pub use penalty_below_bound::PenaltyBelowBound;

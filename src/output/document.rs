@@ -1,6 +1,6 @@
-//! Paragraphs and tables in every format but HTML.
+//! Paragraphs and tables as text and in Markdown.
 
-use crate::table::{Table, latex_document, markdown, wrapped};
+use crate::table::{Table, markdown, wrapped};
 
 /// The text of a report: paragraphs, tables, and paragraphs after them.
 #[derive(Default)]
@@ -27,9 +27,5 @@ impl Document {
         let tables = self.tables.iter().map(Table::to_markdown);
         let parts = [format!("# {}\n", self.title)].into_iter().chain(paragraphs(&self.opening));
         parts.chain(tables).chain(paragraphs(&self.closing)).collect::<Vec<_>>().join("\n")
-    }
-    /// In LaTeX, for `\input`: the paragraphs, then the tables. See [`LATEX_PACKAGES`](crate::table::LATEX_PACKAGES).
-    pub fn to_latex(&self) -> String {
-        latex_document(&[&self.opening[..], &self.closing].concat(), &self.tables)
     }
 }

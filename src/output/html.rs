@@ -24,10 +24,7 @@ pub(crate) struct HtmlPage {
 #[derive(Default)]
 pub(crate) struct Section {
     pub title: String,
-    pub paragraphs: Vec<String>,
     pub tables: Vec<Table>,
-    /// Titles and texts of SVG files.
-    pub plots: Vec<(String, String)>,
     /// Titles of pictures and their files beside the page.
     pub pictures: Vec<(String, String)>,
 }
@@ -70,9 +67,7 @@ impl HtmlPage {
         text += "</section>\n";
         for section in &self.sections {
             text += &format!("<section>\n<h2>{}</h2>\n", escaped(&section.title));
-            section.paragraphs.iter().for_each(|of| text += &paragraph("", of));
             section.tables.iter().for_each(|of| text += &table(of));
-            text += &figures("plots", &section.plots, &[]);
             text += &figures("pictures", &[], &section.pictures);
             text += "</section>\n";
         }

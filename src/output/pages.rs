@@ -18,7 +18,7 @@ pub(super) fn history_file(scene: &str) -> String {
 
 impl Report {
     /// Program, machine and settings in one line.
-    pub(crate) fn heading(&self) -> String {
+    pub(super) fn heading(&self) -> String {
         let mut text = self.program.words() + "; ";
         text += &match self.program.repeat {
             1 => "times in seconds".to_owned(),
@@ -35,50 +35,55 @@ impl Report {
         text
     }
     /// The heading, and the command that makes the report again.
-    pub(crate) fn provenance(&self) -> Vec<String> {
+    fn provenance(&self) -> Vec<String> {
         [self.heading()].into_iter().chain(self.program.command.clone()).collect()
     }
 
     /// The tables in Markdown.
     pub fn to_markdown(&self) -> String {
-        let (opening, tables) = (vec![self.heading()], self.tables());
-        Document { title: "Comparison", opening, tables, closing: Vec::new() }.to_markdown()
+        let (opening, mut closing) = (vec![self.heading()], Vec::new());
+        let mut tables = self.tables();
+        if self.has_rounds() {
+            tables = [self.work_tables(), tables, self.phase_tables()].concat();
+            closing = self.verdicts();
+        }
+        Document { title: "Comparison", opening, tables, closing }.to_markdown()
     }
 
     /// The report as a page, which links the pictures `SCENE-LABEL.svg` that are in the directory.
     pub(super) fn page(&self, directory: &Path) -> HtmlPage {
-        let parts = scenes(&self.rows);
-        let scenes = distinct(self.rows.iter().map(|row| row.scene.as_str()));
+        let scenes = scenes(&self.rows);
         // the first picture of a solution stands on the first screen
         let mut first = Vec::new();
         let mut pictures: Vec<_> =
-            scenes.iter().map(|scene| self.pictures(scene, directory)).collect();
+            scenes.iter().map(|(scene, _)| self.pictures(scene, directory)).collect();
         if let Some(of_scene) = pictures.iter_mut().find(|of_scene| !of_scene.is_empty()) {
             first.push(of_scene.remove(0));
         }
-        let of_scene = |(scene, pictures): (&str, _)| Section {
-            title: scene.to_owned(),
-            tables: parts
-                .iter()
-                .filter(|(_, rows)| rows[0].scene == scene)
-                .flat_map(|(title, rows)| tables_of(title, rows))
-                .collect(),
+        let of_scene = |((scene, rows), pictures): (&(&str, Vec<&Row>), _)| Section {
+            title: (*scene).to_owned(),
+            tables: tables_of(scene, rows),
             pictures,
-            ..Section::default()
         };
         HtmlPage {
             title: match scenes[..] {
-                [scene] => scene.to_owned(),
+                [(scene, _)] => scene.to_owned(),
                 _ => "Comparison of schemes".to_owned(),
             },
-            lead: lead(&self.rows),
-            summary: summaries(&self.rows),
+            lead: match self.has_rounds() {
+                true => self.verdicts().join(" "),
+                false => lead(&self.rows),
+            },
+            summary: match self.has_rounds() {
+                true => self.work_tables(),
+                false => summaries(&self.rows),
+            },
             plots: self.overview(),
             pictures: first,
-            sections: [self.plots()]
+            sections: [self.plots(), self.work()]
                 .into_iter()
                 .flatten()
-                .chain(scenes.iter().copied().zip(pictures).map(of_scene))
+                .chain(scenes.iter().zip(pictures).map(of_scene))
                 .collect(),
             provenance: self.provenance(),
         }
@@ -86,11 +91,11 @@ impl Report {
 
     /// The plots of the first screen.
     #[cfg(feature = "plot")]
-    pub(crate) fn overview(&self) -> Vec<(String, String)> {
+    fn overview(&self) -> Vec<(String, String)> {
         overview(&self.rows).map(|(caption, figure)| (caption, figure.to_svg())).into()
     }
     #[cfg(not(feature = "plot"))]
-    pub(crate) fn overview(&self) -> Vec<(String, String)> {
+    fn overview(&self) -> Vec<(String, String)> {
         Vec::new()
     }
 
@@ -111,6 +116,17 @@ impl Report {
     #[cfg(not(feature = "plot"))]
     fn plots(&self) -> Option<Section> {
         None
+    }
+
+    /// The section of the phases of the fastest runs, with the errors against time and unknowns.
+    fn work(&self) -> Option<Section> {
+        #[cfg(feature = "plot")]
+        let names = self.work_figures().into_iter().map(|(name, _)| (name.clone(), name + ".svg"));
+        #[cfg(not(feature = "plot"))]
+        let names = std::iter::empty();
+        let (tables, title) = (self.phase_tables(), "Work".to_owned());
+        let section = Section { title, tables, pictures: names.collect() };
+        self.has_rounds().then_some(section)
     }
 
     /// The pictures of a scene: titles and files, solutions first. The plot of histories is there if it has been written.

@@ -2,22 +2,38 @@
 
 use std::path::{Path, PathBuf};
 
+use serde_json::json;
+
 use super::csv;
 use super::pages::history_file;
 use crate::error::Error;
 use crate::files::replace_text;
 #[cfg(feature = "plot")]
-use crate::plot::{convergence, history_figure, work_precision};
+use crate::plot::{Figure, Quantity, convergence, cost_figure, history_figure, work_precision};
 #[cfg(feature = "plot")]
 use crate::real::Precision;
 #[cfg(feature = "plot")]
 use crate::study::row::distinct;
+#[cfg(feature = "plot")]
+use crate::study::series::by_scene;
 use crate::study::tables::summary::summaries;
 use crate::study::tables::values;
 use crate::study::{Report, Series, Variant, file_name};
-use crate::table::{Table, latex_document};
+use crate::table::latex_document;
 
 impl Report {
+    /// The report as JSON. Numbers that do not apply, and numbers that are not finite, are null. A report of rounds has two
+    /// keys more, `reach` and `verdicts`.
+    pub fn to_json(&self) -> String {
+        // `serde_json` writes every NaN and infinity as null: JSON has no other way
+        let mut value = json!(self);
+        if self.has_rounds() {
+            value["reach"] = json!(self.work_at_errors());
+            value["verdicts"] = json!(self.verdicts());
+        }
+        format!("{value:#}\n")
+    }
+
     /// Rows as comma-separated values after a header of keys, nested keys joined by dots (`error.l2`,
     /// `iterations.outer`). A value that does not apply, or that a row does not have, is an empty cell; several
     /// warnings, and the points of a history as in JSON, are separated by `"; "`.
@@ -28,9 +44,8 @@ impl Report {
         csv::lines(&self.rows)
     }
 
-    /// Removes the files of this report from a directory, where they are: those that [`Report::write`],
-    /// [`Journal`](crate::study::Journal) and [`WorkPrecision::write`](crate::work_precision::WorkPrecision::write)
-    /// write but `report.json`, and the fields and pictures of its rows. Another report that is written there then has
+    /// Removes the files of this report from a directory, where they are: those that [`Report::write`]
+    /// and [`Journal`](crate::study::Journal) write but `report.json`, and the fields and pictures of its rows. Another report that is written there then has
     /// no file of this one beside it.
     pub fn remove_files(&self, directory: impl AsRef<Path>) {
         let mut names: Vec<String> =
@@ -53,8 +68,8 @@ impl Report {
     }
 
     /// Writes `report.json`, `report.csv`, `report.md`, `report.tex`, the plots `convergence.svg` and
-    /// `work_precision.svg`, where rows have a history `SCENE-history.svg`, and `report.html` into a directory, which is
-    /// made if need be. Returns the files in order. The page shows these plots and the pictures `SCENE-LABEL.svg` of the
+    /// `work_precision.svg`, where rows have a history `SCENE-history.svg`, of rounds `reach.csv`, `SCENE-time.svg` and
+    /// `SCENE-unknowns.svg`, and `report.html` into a directory, which is made if need be. Returns the files in order. The page shows these plots and the pictures `SCENE-LABEL.svg` of the
     /// directory. Without the feature `plot` there are no plots. Each file is replaced as a whole: a reader never sees a
     /// part of it.
     ///
@@ -69,9 +84,10 @@ impl Report {
         put("report.json", &self.to_json());
         put("report.csv", &self.to_csv());
         put("report.md", &self.to_markdown());
-        let tables: Vec<Table> =
-            summaries(&self.rows).into_iter().chain(values(&self.rows)).collect();
-        put("report.tex", &latex_document(&[], &tables));
+        put("report.tex", &self.to_latex());
+        if self.has_rounds() {
+            put("reach.csv", &csv::lines(&self.work_at_errors()));
+        }
         #[cfg(feature = "plot")]
         {
             put("convergence.svg", &convergence(&self.rows).to_svg());
@@ -84,8 +100,35 @@ impl Report {
                 }
             }
         }
+        #[cfg(feature = "plot")]
+        for (name, figure) in self.work_figures() {
+            put(&(name + ".svg"), &figure.to_svg());
+        }
         let page = self.page(directory);
         results.push(replace_text(&directory.join("report.html"), &page.to_html()));
         results.into_iter().collect()
+    }
+
+    /// The tables of the first screen in LaTeX, for `\input`; see [`LATEX_PACKAGES`](crate::output::LATEX_PACKAGES).
+    pub fn to_latex(&self) -> String {
+        match self.has_rounds() {
+            true => {
+                let words = [vec![self.heading()], self.verdicts()].concat();
+                latex_document(&words, &self.work_tables())
+            }
+            false => latex_document(&[], &[summaries(&self.rows), values(&self.rows)].concat()),
+        }
+    }
+
+    /// The errors of every scene of a report of rounds against time and unknowns, as `SCENE-time` and `SCENE-unknowns`.
+    #[cfg(feature = "plot")]
+    pub fn work_figures(&self) -> Vec<(String, Figure)> {
+        let mut figures = Vec::new();
+        for (scene, series) in by_scene(&self.series()).into_iter().filter(|_| self.has_rounds()) {
+            for (name, cost) in [("time", Quantity::Seconds), ("unknowns", Quantity::Unknowns)] {
+                figures.push((format!("{scene}-{name}"), cost_figure(scene, &series, cost)));
+            }
+        }
+        figures
     }
 }

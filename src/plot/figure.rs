@@ -105,7 +105,7 @@ fn names(series: &[Series<'_>]) -> Vec<String> {
 
 /// Whether some meshes of a scene are adaptive.
 fn is_adaptive(series: &[&Series<'_>]) -> bool {
-    series.iter().any(|s| s.variant.meshes.is_adaptive())
+    series.iter().any(|s| s.variant.theta.is_some())
 }
 
 /// Whether some error of a scene is known.

@@ -3,7 +3,6 @@
 use std::cell::RefCell;
 
 use super::place::{self, Norm, Place};
-use super::row::short;
 use crate::algebra::{Inequality, SparseMatrix};
 use crate::assemble::DataQuadrature;
 use crate::error::Error;
@@ -13,6 +12,7 @@ use crate::linear::{LinearMethod, is_positive_definite};
 use crate::measure::fit_order;
 use crate::mesh::Mesh;
 use crate::nested::{Hierarchy, Solved};
+use crate::real::maximum;
 use crate::scenes::{AnyScene, Scene};
 use crate::scheme::NamedScheme;
 use crate::study::{Row, Study};
@@ -167,26 +167,22 @@ impl<'r> At<'r> {
     pub fn values(&self) -> Option<&'r [f64]> {
         self.run().values.as_deref()
     }
+    /// The largest difference of the values from those at the first place and a constant; none unless both runs converged.
+    pub fn difference(&self, constant: f64) -> Option<f64> {
+        let (here, first) = (self.values()?, self.first().values()?);
+        let apart = |(here, first): (&f64, &f64)| (first + constant - here).abs();
+        Some(here.iter().zip(first).map(apart).fold(0.0, maximum))
+    }
     /// What is left of the load by reaction, forces and fluxes, over the absolute load.
     pub fn imbalance(&self) -> Option<f64> {
         self.run().imbalance
     }
     /// The order of an error over all places; none unless all runs converged.
     pub fn fitted_order(&self, error: fn(&Row) -> Option<f64>) -> Option<f64> {
-        let point = |at: Self| Some((at.size(), at.of(error)?));
-        let points: Option<Vec<(f64, f64)>> = self.all_places().map(point).collect();
+        let all = (0..self.ran.places.len()).map(|place| Self { place, ..*self });
+        let points: Option<Vec<(f64, f64)>> =
+            all.map(|at| Some((at.size(), at.of(error)?))).collect();
         fit_order(&points?).map(|fit| fit.order)
-    }
-    /// The errors of all places in words.
-    pub fn fitted_errors(&self, error: fn(&Row) -> Option<f64>) -> String {
-        let words = |at: Self| {
-            let level = at.place().shown.unwrap_or_default();
-            at.of(error).map(|error| format!("{level}: {}", short(error)))
-        };
-        format!("error {}", self.all_places().filter_map(words).collect::<Vec<_>>().join(", "))
-    }
-    fn all_places(self) -> impl Iterator<Item = Self> {
-        (0..self.ran.places.len()).map(move |place| Self { place, ..self })
     }
 
     /// The scene in the plane.
@@ -229,8 +225,7 @@ impl<'r> At<'r> {
 
     /// Errors, iterations and whatever went wrong of a run, in a few words.
     pub fn figures(&self) -> String {
-        let mut parts = vec![self.place().note.clone()];
-        parts.retain(|note| !note.is_empty());
+        let mut parts = Vec::new();
         if let Some(row) = self.rows().first() {
             if !row.converged() {
                 parts.push(row.status.to_string());

@@ -47,8 +47,6 @@ impl Criterion {
 /// How many meshes and values of each sweep are run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Effort {
-    /// The coarsest meshes: figures mean little, but every criterion has its rows.
-    Trial,
     /// Coarse meshes and few places of each sweep; every criterion has its rows.
     #[default]
     Quick,
@@ -57,11 +55,9 @@ pub enum Effort {
 }
 
 impl Effort {
-    /// One of three: the first for a trial, the last for all sweeps.
-    pub(crate) fn pick<T>(self, of: [T; 3]) -> T {
-        let [trial, quick, full] = of;
+    /// One of two: the first for the quick study, the last for all sweeps.
+    pub(crate) fn pick<T>(self, quick: T, full: T) -> T {
         match self {
-            Self::Trial => trial,
             Self::Quick => quick,
             Self::Full => full,
         }
@@ -112,8 +108,6 @@ pub(crate) struct Column {
     pub quantity: String,
     pub figure: Of<Option<f64>>,
     pub asked: Of<Asked>,
-    /// Further figures in words.
-    pub detail: Of<String>,
     /// Whether the figure is that of all places, which have no level in common.
     pub is_of_all: bool,
 }
@@ -131,7 +125,6 @@ impl Column {
             quantity: quantity.to_owned(),
             figure: Box::new(figure),
             asked: Box::new(move |_| by_default),
-            detail: Box::new(|at| at.figures()),
             is_of_all: false,
         }
     }
@@ -143,7 +136,6 @@ impl Column {
         asked: impl Fn(&At<'_>) -> Asked + 'static,
     ) -> Self {
         Self {
-            detail: Box::new(move |at| at.fitted_errors(error)),
             is_of_all: true,
             ..Self::new(criterion, quantity, move |at| at.fitted_order(error)).asked(asked)
         }
@@ -156,10 +148,6 @@ impl Column {
             Self::fitted(criterion, &quantity, *error, move |_| limit(k))
         };
         norms.iter().enumerate().map(column).collect()
-    }
-    /// Sets the further figures in words.
-    pub fn detail(self, detail: impl Fn(&At<'_>) -> String + 'static) -> Self {
-        Self { detail: Box::new(detail), ..self }
     }
     /// Sets what is asked of the figure.
     pub fn asked(self, asked: impl Fn(&At<'_>) -> Asked + 'static) -> Self {

@@ -17,7 +17,6 @@ pub use row::{ExpectedRange, StabilityRow, Verdict};
 
 use std::fmt;
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
 
 use crate::error::Error;
 use crate::in_its_dimension;
@@ -27,9 +26,6 @@ use crate::study::row::distinct;
 use at::{At, Ran, Run};
 use case::{Asked, Column, Plan, Sweep};
 use cases::CASES;
-
-/// The least time between two writes of finished rows.
-const WRITE_INTERVAL: Duration = Duration::from_millis(500);
 
 /// A function that receives the case and the scheme that begin.
 type Observer<'a> = Box<dyn Fn(&str, &str) + 'a>;
@@ -106,7 +102,7 @@ impl<'a> Stability<'a> {
         self.command = command;
         self
     }
-    /// Writes the report to this directory as rows come, twice a second at most, and at the end.
+    /// Writes the report to this directory after every sweep.
     #[must_use]
     pub fn write_to(mut self, directory: impl Into<PathBuf>) -> Self {
         self.directory = Some(directory.into());
@@ -143,7 +139,6 @@ impl<'a> Stability<'a> {
         let mut report = StabilityReport::new(self.effort);
         report.program.command.clone_from(&self.command);
         self.save(&report)?;
-        let mut written = Instant::now();
         for case in &CASES {
             if !self.cases.is_empty() && !self.cases.iter().any(|name| name == case.name) {
                 continue;
@@ -155,10 +150,7 @@ impl<'a> Stability<'a> {
             for sweep in sweeps {
                 self.run_sweep(case.name, &sweep, &wanted, &mut report);
                 // rows are saved early, so that an interrupted study keeps them
-                if written.elapsed() > WRITE_INTERVAL {
-                    self.save(&report)?;
-                    written = Instant::now();
-                }
+                self.save(&report)?;
             }
         }
         report.complete = true;
@@ -232,9 +224,8 @@ fn row_of(case: &str, at: &At<'_>, column: &Column) -> Option<StabilityRow> {
         quantity: column.quantity.clone(),
         expected,
         measured,
-        detail: (column.detail)(at),
+        detail: at.figures(),
         verdict: Verdict::on(&expected, measured),
-        missed_by: measured.and_then(|figure| expected.missed_by(figure)),
     })
 }
 

@@ -48,8 +48,6 @@ pub(crate) struct Place {
     pub is_cold: bool,
     /// Whether every scheme runs with the interior point method too.
     pub has_interior_point: bool,
-    /// What is said of the place before the figures of a run.
-    pub note: String,
 }
 
 impl Place {
@@ -63,7 +61,6 @@ impl Place {
             precision: Precision::Double,
             is_cold: false,
             has_interior_point: false,
-            note: String::new(),
         }
     }
     /// A scene of the catalogue, or Poisson's equation as `sines-2d`, on levels.

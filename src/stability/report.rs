@@ -5,20 +5,19 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 
 use super::case::{Criterion, Effort};
-use super::cases::{STABILITY_CASES, criteria};
+use super::cases::criteria;
 use super::row::{StabilityRow, Verdict};
 use crate::error::Error;
 use crate::files::replace_text;
 use crate::output::csv;
 use crate::output::document::Document;
-use crate::output::html::{HtmlPage, Section};
 use crate::study::Program;
 use crate::study::row::distinct;
 use crate::table::{Cell, Table, WIDTH};
 
 /// Notes before the tables.
 const READING: [&str; 3] = [
-    "Every row has a figure, the limits it should keep, and the verdict that follows from the two. A row that fails as expected shows a choice of which theory or experience says that it is not enough there; a row that is missed is a failure that nobody announced. What is reported only has no limits. Figures have the digits that decide.",
+    "Every row has a figure, the limits it should keep, and the verdict that follows from the two. A row that fails as expected shows a choice of which theory or experience says that it is not enough there; a row that is missed is a failure that nobody announced. What is reported only has no limits.",
     "Schemes: p1 and p2, conforming linear and quadratic elements with bounds at nodes; cr, Crouzeix-Raviart elements with bounds on facet means; sipg and nipg, symmetric and non-symmetric interior penalty on broken linears; wopsip, the weakly over-penalised method on broken linears with bounds at vertices, wopsip:facet-means the same with bounds on facet means.",
     "Penalties: sipg has 1.5 times the proven bound, the least interior penalty that is provably enough on each cell, nipg 1/h_F, with h_F the diameter of a facet; sigma is the factor of 1/h_F. wopsip has eta/h_F^3, with eta the square of the diameter of the domain unless it is given; weight=anisotropic puts h^2 l_F in place of h_F^3, with h the mesh size and l_F the height of the cells over the facet. All carry the coefficient of the problem. L2 and H1 are norms of the error (H1 broken and without values), energy is the scheme's own norm, with its penalty. Problems are those of the catalogue of scenes; sines-Dd is Poisson's equation solved by the product of sin(pi x_k).",
 ];
@@ -67,59 +66,46 @@ impl StabilityReport {
         criteria().map(of).filter(|(.., rows)| !rows.is_empty())
     }
 
-    /// Verdicts of every scheme with its choices; all values of a factor that is swept are one line.
-    fn by_scheme(&self) -> Table {
-        let line = |series: String| {
+    /// Verdicts by scheme with its choices, all values of a factor that is swept in one line, and by criterion; then every
+    /// row that misses its range, if there are any.
+    fn tables(&self) -> Vec<Table> {
+        let verdicts = Verdict::ALL.map(Verdict::name).join(",");
+        let of_scheme = |series: String| {
             let rows: Vec<_> = self.rows.iter().filter(|row| row.series() == series).collect();
             [Cell::Words(series)].into_iter().chain(counts(&rows)).collect()
         };
-        let lines = distinct(self.rows.iter().map(StabilityRow::series)).into_iter().map(line);
-        Table::new("Verdicts by scheme", &format!("scheme,{}", verdicts()), lines.collect())
-    }
-
-    /// Verdicts of every criterion.
-    fn by_criterion(&self) -> Table {
-        let line = |(case, criterion, rows): (&str, &Criterion, Vec<&StabilityRow>)| {
+        let schemes = distinct(self.rows.iter().map(StabilityRow::series)).into_iter();
+        let of_criterion = |(case, criterion, rows): (&str, &Criterion, Vec<&StabilityRow>)| {
             let missed = rows.iter().filter(|row| row.verdict == Verdict::Missed);
             let missed = distinct(missed.map(|row| &row.label[..])).join("; ");
             let names = [case, criterion.name].map(|name| Cell::Words(name.to_owned()));
             names.into_iter().chain(counts(&rows)).chain([Cell::Words(missed)]).collect()
         };
-        let heads = format!("case,criterion,{},missed by", verdicts());
-        Table::new("Verdicts by criterion", &heads, self.asked().map(line).collect())
-    }
-
-    /// Every row that misses its range, with the factor; no table without such rows.
-    fn missed(&self) -> Option<Table> {
-        let rows = self.rows.iter().filter(|row| row.verdict == Verdict::Missed);
-        let title = "What was missed, and by what factor";
-        let table = rows_of(title, rows.collect());
-        (!table.rows.is_empty()).then_some(table)
-    }
-
-    /// The rows of every case, with its criteria.
-    fn cases(&self) -> impl Iterator<Item = Table> + '_ {
-        let rows = |case| self.rows.iter().filter(move |row| row.case == case).collect::<Vec<_>>();
-        let cases = STABILITY_CASES.iter().map(move |&case| (case, rows(case)));
-        cases.filter(|(_, rows)| !rows.is_empty()).map(|(case, rows)| Table {
-            remarks: self
-                .asked()
-                .filter(|of| of.0 == case)
-                .map(|(_, c, _)| format!("{}: {}", c.name, c.sentence))
-                .collect(),
-            ..rows_of(&format!("Case {case}"), rows)
-        })
-    }
-
-    /// Verdicts by scheme and by criterion, and what was missed.
-    fn tables(&self) -> Vec<Table> {
-        [self.by_scheme(), self.by_criterion()].into_iter().chain(self.missed()).collect()
+        let missed = self.rows.iter().filter(|row| row.verdict == Verdict::Missed);
+        let mut tables = vec![
+            Table::new(
+                "Verdicts by scheme",
+                &format!("scheme,{verdicts}"),
+                schemes.map(of_scheme).collect(),
+            ),
+            Table::new(
+                "Verdicts by criterion",
+                &format!("case,criterion,{verdicts},missed by"),
+                self.asked().map(of_criterion).collect(),
+            ),
+            Table::new(
+                "What was missed",
+                "criterion,scheme,problem,n,at,quantity,expected,measured,further figures",
+                missed.map(StabilityRow::cells).collect(),
+            ),
+        ];
+        tables.retain(|table| !table.rows.is_empty());
+        tables
     }
 
     /// Verdicts and what was missed, for a terminal: the report without its rows.
     pub fn summary(&self) -> String {
-        let mut opening = vec![self.heading()];
-        opening.extend(self.findings());
+        let opening = [self.heading()].into_iter().chain(self.findings()).collect();
         let tables = self.tables();
         Document { title: "Stability", opening, tables, closing: Vec::new() }.to_text(WIDTH)
     }
@@ -138,50 +124,17 @@ impl StabilityReport {
     }
 
     /// Provenance, notes, verdicts, what was missed, and the criteria in words.
-    fn document(&self) -> Document {
+    fn to_markdown(&self) -> String {
+        let command = self.program.command.iter().map(|command| format!("Made by {command}."));
+        let opening = [self.heading()].into_iter().chain(command);
+        let opening = opening.chain(READING.map(str::to_owned)).chain(self.findings()).collect();
         let words = |(_, c, _): (_, &Criterion, _)| {
             [c.name, c.sentence].map(|text| Cell::Words(text.to_owned())).to_vec()
         };
         let criteria = self.asked().map(words).collect();
         let criteria = Table::new("The criteria", "criterion,condition", criteria);
         let tables = self.tables().into_iter().chain([criteria]).collect();
-        Document { title: "Stability", opening: self.paragraphs(), tables, closing: Vec::new() }
-    }
-
-    /// Provenance, notes and verdicts in LaTeX, for `\input`; see
-    /// [`LATEX_PACKAGES`](crate::output::LATEX_PACKAGES).
-    pub fn to_latex(&self) -> String {
-        self.document().to_latex()
-    }
-
-    /// One page with all tables.
-    fn page(&self) -> HtmlPage {
-        let section = |title: &str, paragraphs, tables| Section {
-            title: title.to_owned(),
-            paragraphs,
-            tables,
-            ..Section::default()
-        };
-        HtmlPage {
-            title: "Stability".to_owned(),
-            lead: self.heading(),
-            summary: self.tables(),
-            sections: vec![
-                section("Reading", self.paragraphs().split_off(1), Vec::new()),
-                section("Cases", Vec::new(), self.cases().collect()),
-            ],
-            ..HtmlPage::default()
-        }
-    }
-
-    /// The paragraphs before the tables.
-    fn paragraphs(&self) -> Vec<String> {
-        let command = self.program.command.iter().map(|command| format!("Made by {command}."));
-        let mut paragraphs = vec![self.heading()];
-        paragraphs.extend(command);
-        paragraphs.extend(READING.map(str::to_owned));
-        paragraphs.extend(self.findings());
-        paragraphs
+        Document { title: "Stability", opening, tables, closing: Vec::new() }.to_markdown()
     }
 
     /// The runs that ended in an error.
@@ -191,7 +144,7 @@ impl StabilityReport {
 
     /// Program, provenance and the count of verdicts in one line.
     fn heading(&self) -> String {
-        let effort = self.effort.pick(["trial", "quick", "full"]);
+        let effort = self.effort.pick("quick", "full");
         let end = if self.complete { "" } else { " (interrupted or still running)" };
         let count = |verdict: Verdict| format!("{} {}", self.count(verdict), verdict.name());
         let (program, rows) = (self.program.words(), self.rows.len());
@@ -201,54 +154,21 @@ impl StabilityReport {
         )
     }
 
-    /// Writes `stability.json`, `.csv`, `.md` and `.tex` into a directory, which is made if need be, and, if the report
-    /// is complete, `stability.html`, where all rows stand. Each file takes the place of an earlier one only when it is
-    /// whole.
+    /// Writes `stability.json` and `stability.csv` with all rows, and `stability.md` with the verdicts, into a directory,
+    /// which is made if need be. Each file takes the place of an earlier one only when it is whole.
     ///
     /// # Errors
     /// [`Error::Write`] at the first file that cannot be written.
     pub fn write(&self, directory: &Path) -> Result<Vec<PathBuf>, Error> {
-        let mut files = vec![
-            ("json", self.to_json()),
-            ("csv", csv::lines(&self.rows)),
-            ("md", self.document().to_markdown()),
-            ("tex", self.to_latex()),
-        ];
-        if self.complete {
-            files.push(("html", self.page().to_html()));
-        }
+        let files =
+            [("json", self.to_json()), ("csv", csv::lines(&self.rows)), ("md", self.to_markdown())];
         let path = |end| directory.join(format!("stability.{end}"));
         files.iter().map(|(end, text)| replace_text(&path(end), text)).collect()
     }
-}
-
-/// The heads of columns for each verdict.
-fn verdicts() -> String {
-    Verdict::ALL.map(Verdict::name).join(",")
 }
 
 /// The number of rows for each verdict.
 fn counts(rows: &[&StabilityRow]) -> [Cell; 5] {
     let count = |verdict| rows.iter().filter(|row| row.verdict == verdict).count();
     Verdict::ALL.map(|verdict| Cell::whole(Some(count(verdict))))
-}
-
-/// A table of rows.
-fn rows_of(title: &str, rows: Vec<&StabilityRow>) -> Table {
-    let line = |row: &StabilityRow| {
-        vec![
-            Cell::Words(row.criterion.clone()),
-            Cell::Words(row.label.clone()),
-            Cell::Words(format!("{} {}", row.problem, row.precision)),
-            Cell::whole(row.level),
-            Cell::Words(row.place()),
-            Cell::Words(row.quantity.clone()),
-            Cell::Words(row.expected.words()),
-            Cell::number(row.figure_in_words()),
-            Cell::Words(row.verdict_words()),
-            Cell::Words(row.detail.clone()),
-        ]
-    };
-    let heads = "criterion,scheme,problem,n,at,quantity,expected,measured,verdict,further figures";
-    Table::new(title, heads, rows.into_iter().map(line).collect())
 }

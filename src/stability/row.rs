@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::table::Cell;
+
 /// The range of a figure that a criterion asks for. A figure without limits is reported and not
 /// judged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -34,30 +36,6 @@ impl ExpectedRange {
             && self.at_most.is_none_or(|most| figure <= most)
     }
 
-    /// The factor by which a figure misses the range; none for a limit of zero and for a figure
-    /// that is not positive or not a number.
-    pub fn missed_by(&self, figure: f64) -> Option<f64> {
-        if self.holds(figure) || figure.is_nan() {
-            return None;
-        }
-        let factor = match (self.at_least, self.at_most) {
-            (Some(least), _) if figure < least => least / figure,
-            (_, Some(most)) => figure / most,
-            _ => return None,
-        };
-        (factor.is_finite() && factor > 0.0).then_some(factor)
-    }
-
-    /// A figure with as many digits as it takes to see on which side of a limit it lies, three at
-    /// least.
-    pub fn deciding(&self, figure: f64) -> String {
-        let texts = (0..15).map(|more| with_digits(figure, more));
-        let agrees = |text: &String| {
-            text.parse().is_ok_and(|read: f64| self.holds(read) == self.holds(figure))
-        };
-        texts.into_iter().find(agrees).unwrap_or_else(|| short(figure))
-    }
-
     fn is_judged(&self) -> bool {
         self.at_least.is_some() || self.at_most.is_some()
     }
@@ -73,26 +51,12 @@ impl ExpectedRange {
     }
 }
 
-/// A number in three digits, without a power of ten where it needs none.
-pub(crate) fn short(x: f64) -> String {
-    with_digits(x, 0)
-}
-
-/// A number in three digits and some `more`, without a power of ten where the number needs none.
-fn with_digits(x: f64, more: usize) -> String {
-    let trimmed = |digits: &str| digits.trim_end_matches('0').trim_end_matches('.').to_owned();
-    let places = match x.abs() {
-        0.0 => return "0".to_owned(),
-        a if !(1e-2..1e4).contains(&a) => {
-            let text = format!("{x:.*e}", 2 + more);
-            let (digits, power) = text.split_once('e').expect("the format has a power");
-            return format!("{}e{power}", trimmed(digits));
-        }
-        a if a >= 100.0 => 1,
-        a if a >= 10.0 => 2,
-        _ => 3,
-    };
-    trimmed(&format!("{x:.*}", places + more))
+/// A number with a power of ten only where it needs one.
+fn short(x: f64) -> String {
+    match x.abs() {
+        size if size > 0.0 && !(1e-2..1e4).contains(&size) => format!("{x:e}"),
+        _ => ((x * 1e3).round() / 1e3).to_string(),
+    }
 }
 
 /// The verdict on a figure and its expected range.
@@ -173,44 +137,30 @@ pub struct StabilityRow {
     pub detail: String,
     /// The verdict on figure and range.
     pub verdict: Verdict,
-    /// The factor by which the limit is missed, if there is one.
-    pub missed_by: Option<f64>,
 }
 
 impl StabilityRow {
-    /// The verdict in words, with the factor by which a limit is missed.
-    pub fn verdict_words(&self) -> String {
-        match (self.verdict, self.missed_by, self.measured) {
-            (Verdict::Missed | Verdict::FailsAsExpected, Some(factor), _) => {
-                format!("{} (factor {})", self.verdict.name(), factor_in_words(factor))
-            }
-            (Verdict::Missed | Verdict::FailsAsExpected, None, None) => {
-                format!("{} (no figure)", self.verdict.name())
-            }
-            _ => self.verdict.name().to_owned(),
-        }
-    }
-
-    /// The place of the sweep in words; empty without a sweep.
-    pub(crate) fn place(&self) -> String {
-        self.value.map_or_else(String::new, |value| format!("{} {}", self.parameter, short(value)))
+    /// The cells of a table of rows that miss their range.
+    pub(super) fn cells(&self) -> Vec<Cell> {
+        let place = self.value.map(|value| format!("{} {}", self.parameter, short(value)));
+        vec![
+            Cell::Words(self.criterion.clone()),
+            Cell::Words(self.label.clone()),
+            Cell::Words(format!("{} {}", self.problem, self.precision)),
+            Cell::whole(self.level),
+            Cell::Words(place.unwrap_or_default()),
+            Cell::Words(self.quantity.clone()),
+            Cell::Words(self.expected.words()),
+            Cell::digits(self.measured, 3),
+            Cell::Words(self.detail.clone()),
+        ]
     }
 
     /// The label, of a sweep of a penalty factor without its value: `wopsip@eta`.
-    pub(crate) fn series(&self) -> String {
+    pub(super) fn series(&self) -> String {
         match self.parameter == "eta" || self.parameter == "sigma" {
             true => format!("{}@{}", self.scheme, self.parameter),
             false => self.label.clone(),
         }
     }
-
-    /// The figure, with the digit that decides.
-    pub(crate) fn figure_in_words(&self) -> Option<String> {
-        self.measured.map(|figure| self.expected.deciding(figure))
-    }
-}
-
-/// A factor by which a limit is missed, with as many digits as it takes to see that it is above one.
-pub(crate) fn factor_in_words(factor: f64) -> String {
-    ExpectedRange::at_most(1.0).deciding(factor)
 }

@@ -2,14 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use crate::assemble::{DataQuadrature, Discretisation, MOST_ENTRIES, entries_at_most};
-use crate::constraint::Nodes;
+use crate::assemble::DataQuadrature;
 use crate::error::Error;
 use crate::mesh::{BoundaryCondition, BoxDomain, Domain, Mesh, describe_point};
 use crate::problem::{DataOnMesh, Given, Problem};
 use crate::real::Point;
 use crate::scenes::Scene;
-use crate::scheme::{ConformingP1, NonconformingP1, Scheme};
+use crate::scheme::Scheme;
 
 /// Checks that a scene fits its domain. Returns the barycentre of a facet of a mesh on which the exact solution of the
 /// scene breaks the contact condition, or none.
@@ -19,8 +18,7 @@ use crate::scheme::{ConformingP1, NonconformingP1, Scheme};
 /// the contact condition may fail there: it is tested on every contact facet.
 ///
 /// # Errors
-/// [`Error::GivenTwice`]; [`Error::UnfitMesh`] if mesh and scene do not agree on having a contact boundary, or if the data of
-/// the scene are no data on the mesh: not finite, or without an admissible value.
+/// [`Error::GivenTwice`]; [`Error::UnfitMesh`] if mesh and scene do not agree on having a contact boundary.
 pub fn check_fit<const D: usize>(scene: &Scene<D>) -> Result<Option<String>, Error> {
     scene.problem.check_given_once()?;
     let Domain::Mesh(mesh) = &scene.domain else {
@@ -28,34 +26,7 @@ pub fn check_fit<const D: usize>(scene: &Scene<D>) -> Result<Option<String>, Err
     };
     mesh.check_boundary_conditions()?;
     check_contact(scene)?;
-    check_data(scene, mesh)?;
     Ok(first_failure(scene, mesh))
-}
-
-/// Checks that the data of the scene are defined on the mesh, at vertices, on facets and at
-/// quadrature points.
-fn check_data<const D: usize>(scene: &Scene<D>, mesh: &Mesh<D>) -> Result<(), Error> {
-    let (problem, quadrature) = (&scene.problem.clone().on(Nodes), DataQuadrature::default());
-    let at_vertices = || {
-        let space = Discretisation::new(&ConformingP1, problem, mesh, quadrature)?;
-        space.load().and_then(|_| space.bounds()).map(|_| ())
-    };
-    let on_facets = || {
-        let space = Discretisation::new(&NonconformingP1, problem, mesh, quadrature)?;
-        space.bounds().map(|_| ())
-    };
-    at_vertices().and_then(|()| on_facets()).map_err(|why| match why {
-        Error::DataNotFinite(_)
-        | Error::CoefficientNotPositive(_)
-        | Error::EmptyConstraint { .. } => Error::unfit_mesh(&scene.name, why),
-        other => other,
-    })
-}
-
-/// The coarsest mesh of the unit cube, on which schemes are asked what they are on all meshes.
-pub(super) fn cube<const D: usize>() -> Result<Mesh<D>, Error> {
-    let cube = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    Ok(Mesh::kuhn_box(&cube, [1; D])?)
 }
 
 /// Checks that an element can impose the inequality of a problem and that the facet form is made for the
@@ -76,33 +47,13 @@ pub(super) fn check_scheme<const D: usize>(
         }
     }
     let problem = Problem { coefficient: Given::default(), ..problem.in_group(&[], &[]) };
-    match scheme.discretise(&problem, &cube()?, quadrature) {
+    let cube = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    match scheme.discretise(&problem, &Mesh::kuhn_box(&cube, [1; D])?, quadrature) {
         Err(
             why @ (Error::NothingToBound(_) | Error::UnsupportedForm(_) | Error::Quadrature(_)),
         ) => Err(why),
         _ => Ok(()),
     }
-}
-
-/// Checks that the matrix of a scheme on so many cells of a level has no more entries than can be counted, before any
-/// mesh is built.
-///
-/// # Errors
-/// [`Error::Parameter`].
-pub(super) fn check_entries<const D: usize>(
-    scheme: &dyn Scheme<D>,
-    level: usize,
-    cells: f64,
-) -> Result<(), Error> {
-    let entries = entries_at_most(cells, &*scheme.element(), &*scheme.form(&cube()?));
-    if entries <= MOST_ENTRIES {
-        return Ok(());
-    }
-    let allowed = format!(
-        "the matrix of {} there may have {entries:.1e} entries in one process, at most {MOST_ENTRIES:.1e} are possible; choose a coarser level, a lower degree or more processes",
-        scheme.name()
-    );
-    Err(Error::parameter("level", level, allowed))
 }
 
 /// Checks that the labels of schemes and the names of solvers tell the rows of a study apart: orders are of rows of one

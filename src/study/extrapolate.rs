@@ -4,7 +4,7 @@ use std::borrow::Borrow;
 use std::collections::BTreeMap;
 
 use super::row::Row;
-use super::series::{Meshes, Series, Variant, series_of};
+use super::series::{Series, Variant, series_of};
 use crate::measure::Rounding;
 
 /// The limit of a figure as the mesh size tends to zero.
@@ -111,6 +111,6 @@ pub(crate) fn extrapolate<R: Borrow<Row>>(rows: &[R]) -> Vec<Extrapolated> {
                 .collect(),
         })
     };
-    let uniform = series_of(rows).into_iter().filter(|s| s.variant.meshes == Meshes::Uniform);
+    let uniform = series_of(rows).into_iter().filter(|s| s.variant.theta.is_none());
     uniform.filter_map(of_series).collect()
 }

@@ -1,5 +1,6 @@
 //! A journal of rows: each is on disk as soon as it is finished.
 
+use std::fmt::Display;
 use std::fs::{self, File, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -65,26 +66,21 @@ impl Journal {
     }
 
     /// The journal of a directory with its rows, for a run that asks for rows with these keys
-    /// ([`Study::keys`](super::Study::keys)); an empty one where there is none. Where `report.json` has been deleted,
-    /// `request.json` says whose the rows of `report.jsonl` are.
+    /// ([`Study::keys`](super::Study::keys)); an empty one where there is none.
     ///
     /// # Errors
     /// [`Error::OtherRequest`] if version, precision, number of runs or request of the program are not
-    /// those of the journal, or if it has a row that is not asked for; [`Error::Read`], also of rows of which neither
-    /// file says whose they are; [`Error::Write`]. Nothing is written before these checks.
+    /// those of the journal, or if it has a row that is not asked for; [`Error::Read`], also of rows without a
+    /// `request.json`, which says whose they are; [`Error::Write`]. Nothing is written before these checks.
     pub fn resume(
         directory: impl AsRef<Path>,
         program: Program,
         keys: &[RowKey],
     ) -> Result<Self, Error> {
         let directory = directory.as_ref();
-        let has = |name: &str| directory.join(name).exists();
-        let (earlier, rows) = if has(REPORT) {
-            Report::read(directory).map(|report| (report.program, report.rows))?
-        } else if has(ROWS) {
-            (program_of_rows(directory)?, rows_of(&directory.join(ROWS))?)
-        } else {
-            (program.clone(), Vec::new())
+        let (earlier, rows) = match directory.join(ROWS).exists() {
+            true => (program_of_rows(directory)?, rows_of(&directory.join(ROWS))?),
+            false => (program.clone(), Vec::new()),
         };
         let words = |p: &Program| {
             let own = [&p.name, &p.version, &p.precision].map(String::clone);
@@ -115,15 +111,11 @@ impl Journal {
 
     fn with_rows(directory: &Path, program: Program, kept: Vec<Row>) -> Result<Self, Error> {
         let path = directory.join(ROWS);
-        let text: String = kept.iter().map(line).collect();
         // before the program of the new run, so that it never stands beside the rows of another run
-        replace(&path, |draft| fs::write(draft, &text))?;
+        let (file, length) = written(&path, &kept)?;
         replace(&directory.join(REQUEST), |draft| fs::write(draft, json(&program)))?;
         let report = Report { program, complete: false, rows: kept };
-        replace(&directory.join(REPORT), |draft| fs::write(draft, report.to_json()))?;
-        let file =
-            OpenOptions::new().append(true).open(&path).map_err(|e| write_error(&path, e))?;
-        let length = text.len() as u64;
+        replace(&directory.join(REPORT), |draft| fs::write(draft, json(&report)))?;
         let Report { program, rows: kept, .. } = report;
         let rows = Mutex::new(Rows { file, length, finished: Vec::new(), kept, is_closed: false });
         Ok(Self { path, program, rows })
@@ -157,6 +149,23 @@ impl Journal {
             return Err(write_error(&self.path, why));
         }
         rows.length += line.len() as u64;
+        Ok(())
+    }
+
+    /// Puts rows in place of all finished ones but the first `count`: those of cases that run several times.
+    ///
+    /// # Errors
+    /// Those of [`Journal::add`].
+    pub fn replace_after(&self, count: usize, new: &[Row]) -> Result<(), Error> {
+        let mut rows = self.rows();
+        if rows.is_closed {
+            return Err(write_error(&self.path, "the journal is closed"));
+        }
+        rows.finished.truncate(count);
+        rows.finished.extend_from_slice(new);
+        let file = written(&self.path, &rows.finished);
+        rows.is_closed = file.is_err();
+        (rows.file, rows.length) = file?;
         Ok(())
     }
 
@@ -200,18 +209,28 @@ fn line(row: &Row) -> String {
     serde_json::to_string(row).expect("a row is plain data with string keys") + "\n"
 }
 
-/// A program as JSON.
-fn json(program: &Program) -> String {
-    serde_json::to_string_pretty(program).expect("a program is plain data with string keys") + "\n"
+/// A program or a report as JSON.
+fn json(of: &impl serde::Serialize) -> String {
+    serde_json::to_string_pretty(of).expect("a report is plain data with string keys") + "\n"
 }
 
-/// The program whose rows a directory has, where no report says so.
+/// The file of rows with these, to which others are added, and its length.
+fn written(path: &Path, rows: &[Row]) -> Result<(File, u64), Error> {
+    let text: String = rows.iter().map(line).collect();
+    replace(path, |draft| fs::write(draft, &text))?;
+    let file = OpenOptions::new().append(true).open(path).map_err(|e| write_error(path, e))?;
+    Ok((file, text.len() as u64))
+}
+
+/// The program whose rows a directory has.
 fn program_of_rows(directory: &Path) -> Result<Program, Error> {
     let path = directory.join(REQUEST);
-    let rest = format!("the rows of {ROWS} may be those of another request: delete them too");
-    let bytes = read_file(&path).map_err(|why| read_error(&path, format!("{why}; {rest}")))?;
-    serde_json::from_slice(&bytes)
-        .map_err(|_| read_error(&path, format!("it is no request, or damaged; {rest}")))
+    let wrong = |why: &dyn Display| {
+        let rest = format!("the rows of {ROWS} may be those of another request: delete them too");
+        read_error(&path, format!("{why}; {rest}"))
+    };
+    let bytes = read_file(&path).map_err(|why| wrong(&why))?;
+    serde_json::from_slice(&bytes).map_err(|why| wrong(&why))
 }
 
 impl Report {
@@ -223,17 +242,8 @@ impl Report {
     pub fn read(directory: impl AsRef<Path>) -> Result<Self, Error> {
         let (path, lines) = (directory.as_ref().join(REPORT), directory.as_ref().join(ROWS));
         let bytes = read_file(&path).map_err(|why| read_error(&path, why))?;
-        let mut report: Self = serde_json::from_slice(&bytes).map_err(|why| {
-            let rest = match lines.exists() {
-                true => format!("delete it, the rows are also in {ROWS}"),
-                false => "delete it to begin anew".to_owned(),
-            };
-            let (line, column) = (why.line(), why.column());
-            read_error(
-                &path,
-                format!("it is no report, or damaged, at line {line}, column {column}: {rest}"),
-            )
-        })?;
+        let mut report: Self =
+            serde_json::from_slice(&bytes).map_err(|why| read_error(&path, why))?;
         if !report.complete && lines.exists() {
             report.rows = rows_of(&lines)?;
             fill_orders(&mut report.rows);
@@ -250,11 +260,8 @@ fn rows_of(path: &Path) -> Result<Vec<Row>, Error> {
     let bytes = read_file(path).map_err(|why| read_error(path, why))?;
     let lines = bytes.split_inclusive(|&b| b == b'\n').filter(|line| line.ends_with(b"\n"));
     let row = |(at, line): (usize, &[u8])| {
-        serde_json::from_slice(line).map_err(|why| {
-            let (line, column) = (at + 1, why.column());
-            let rest = "delete the line, its row runs again";
-            read_error(path, format!("line {line} is no row (column {column}): {rest}"))
-        })
+        let is_wrong = |why| format!("line {}: {why}: delete it, its row runs again", at + 1);
+        serde_json::from_slice(line).map_err(|why| read_error(path, is_wrong(why)))
     };
     lines.enumerate().map(row).collect()
 }

@@ -3,8 +3,6 @@
 mod compatibility;
 mod extrapolate;
 #[cfg(feature = "report")]
-mod fields;
-#[cfg(feature = "report")]
 mod file_name;
 #[cfg(feature = "report")]
 mod journal;
@@ -12,7 +10,6 @@ mod memory;
 pub(crate) mod orders;
 mod part_figures;
 pub(crate) mod program;
-mod reference;
 pub(crate) mod report;
 pub(crate) mod row;
 mod runner;
@@ -28,10 +25,10 @@ pub use file_name::file_name;
 #[cfg(feature = "report")]
 pub use journal::Journal;
 pub use memory::peak_memory_bytes;
-pub use orders::{ObservedOrders, OrderMissed, OrderVerdict, OrdersMissed, fill_orders};
+pub use orders::{ObservedOrder, OrderVerdict, OrdersMissed, fill_orders};
 pub use part_figures::{PartFigures, PartSeconds};
 pub use program::Program;
 pub use report::Report;
 pub use row::{Iterations, Orders, Row, RowKey, Seconds};
 pub use runner::{Progress, Study};
-pub use series::{Meshes, Series, Variant};
+pub use series::{Series, Variant};

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::Read;
-use std::time::{SystemTime, UNIX_EPOCH};
 
 /// The program that made a report, and its settings.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -22,8 +21,6 @@ pub struct Program {
     pub repeat: usize,
     /// Architecture and vector instructions for which the program was compiled.
     pub target_cpu: String,
-    /// When the study began: the system's clock, in universal time; none where the system does not tell.
-    pub date: Option<String>,
     /// The processor's name, on Linux.
     pub processor: Option<String>,
     /// The rest of the request, on which rows depend and which they do not state, by name: parameters of scenes, a mesh
@@ -32,6 +29,9 @@ pub struct Program {
     /// The command that makes the report again, for its page; files of rows do not have it.
     #[cfg_attr(feature = "report", serde(skip))]
     pub command: Option<String>,
+    /// The label of the scheme that verdicts on times compare with the others; of none the fastest. Files do not have it.
+    #[cfg_attr(feature = "report", serde(skip))]
+    pub subject: Option<String>,
 }
 
 impl Program {
@@ -46,28 +46,18 @@ impl Program {
             precision: precision.to_owned(),
             repeat,
             target_cpu: target_cpu(),
-            date: date_of(SystemTime::now()),
             processor: processor(),
             request: BTreeMap::new(),
             command: None,
+            subject: None,
         }
     }
-    /// States when the study began, where that is not when this program was described. A time before 1970 is not
-    /// stated.
-    #[must_use]
-    pub fn begun_at(mut self, time: SystemTime) -> Self {
-        self.date = date_of(time);
-        self
-    }
-    /// Program, date and machine in one line.
+    /// Program and machine in one line.
     #[cfg(feature = "report")]
     pub(crate) fn words(&self) -> String {
-        let Self { name, version, threads, precision, target_cpu, date, processor, .. } = self;
-        let known = |text: &Option<String>| text.clone().unwrap_or_else(|| "unknown".to_owned());
-        let (date, processor) = (known(date), known(processor));
-        format!(
-            "{name} {version}, {date}; {target_cpu}, {processor}; {threads} threads; {precision}"
-        )
+        let Self { name, version, threads, precision, target_cpu, processor, .. } = self;
+        let processor = processor.as_deref().unwrap_or("unknown");
+        format!("{name} {version}; {target_cpu}, {processor}; {threads} threads; {precision}")
     }
     /// States something else on which the rows depend.
     #[must_use]
@@ -115,28 +105,7 @@ fn processor() -> Option<String> {
     const FIRST_LINES: u64 = 4096;
     let mut text = Vec::new();
     File::open("/proc/cpuinfo").ok()?.take(FIRST_LINES).read_to_end(&mut text).ok()?;
-    processor_of(&String::from_utf8_lossy(&text))
-}
-
-/// The first processor's name in the text the kernel gives.
-fn processor_of(text: &str) -> Option<String> {
+    let text = String::from_utf8_lossy(&text);
     let line = text.lines().find(|l| l.starts_with("model name"))?;
     Some(line.split_once(':')?.1.trim().to_owned())
-}
-
-/// Date and time of day; none before 1970.
-fn date_of(time: SystemTime) -> Option<String> {
-    let seconds = time.duration_since(UNIX_EPOCH).ok()?.as_secs();
-    let (days, second) = (seconds / 86_400, seconds % 86_400);
-    // years begin in March here, so that the day that comes and goes is their last
-    let day = days + 719_468;
-    let (era, day) = (day / 146_097, day % 146_097);
-    let year = (day - day / 1460 + day / 36_524 - day / 146_096) / 365;
-    let day = day - (365 * year + year / 4 - year / 100);
-    let month = (5 * day + 2) / 153;
-    let day = day - (153 * month + 2) / 5 + 1;
-    let (month, next) = if month < 10 { (month + 3, 0) } else { (month - 9, 1) };
-    let year = 400 * era + year + next;
-    let (hour, minute, second) = (second / 3600, second / 60 % 60, second % 60);
-    Some(format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}Z"))
 }

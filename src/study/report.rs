@@ -24,12 +24,6 @@ impl Report {
     pub fn new(program: Program, rows: Vec<Row>) -> Self {
         Self { program, complete: true, rows }
     }
-    /// The report as JSON. Numbers that do not apply, and numbers that are not finite, are null.
-    #[cfg(feature = "report")]
-    pub fn to_json(&self) -> String {
-        // `serde_json` writes every NaN and infinity as null: JSON has no other way
-        serde_json::to_string_pretty(self).expect("a report is plain data with string keys") + "\n"
-    }
     /// The series of the report, in the order in which they first occur: the rows of one scheme with one solver on one
     /// scene, those of uniform and of adaptive meshes apart. Tables, orders, limits and plots go by them.
     ///
@@ -40,7 +34,7 @@ impl Report {
     /// let mut report = study().levels([8, 4]).run()?;
     /// report.rows.extend(study().adaptive(Adaptivity::default().steps(2)).run()?.rows);
     /// let series = report.series();
-    /// assert_eq!([&series[0].name[..], &series[1].name[..]], ["p1, uniform", "p1, adaptive"]);
+    /// assert_eq!([series[0].variant.theta, series[1].variant.theta], [None, Some(0.5)]);
     /// assert_eq!([series[0].rows[0].level, series[1].rows.len()], [4, 3]);
     /// # Ok(())
     /// # }

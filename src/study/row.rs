@@ -6,10 +6,8 @@ use super::part_figures::PartFigures;
 use crate::error::Error;
 use crate::error_bound::BoundFigures;
 use crate::facet::PenaltyParameters;
-use crate::inequality::{Certificate, HistoryPoint, Outcome, StageRun, explanation};
-use crate::measure::{ContactErrors, Errors, FoundValue, Penetration, Rounding};
-use crate::nested::{Solved, warnings_of_forces};
-use crate::problem::ValueOf;
+use crate::inequality::{Certificate, Outcome, StageRun};
+use crate::measure::{ContactErrors, Errors, Rounding};
 use crate::scheme::ExpectedOrders;
 
 /// Observed orders.
@@ -129,9 +127,6 @@ pub struct Row {
     pub solver: String,
     /// Linear solver inside it.
     pub linear: String,
-    /// The linear solver asked for, in reports that set several side by side; other rows do not have the key.
-    #[cfg_attr(feature = "report", serde(skip_serializing_if = "Option::is_none"))]
-    pub linear_asked: Option<String>,
     /// Number of cells.
     pub cells: usize,
     /// Number of unknowns before Dirichlet values are eliminated; none if the data ended the assembly
@@ -226,7 +221,6 @@ impl Row {
             parameters: PenaltyParameters::default(),
             solver: String::new(),
             linear: String::new(),
-            linear_asked: None,
             cells: 0,
             unknowns: None,
             nonzeros: None,
@@ -257,83 +251,6 @@ impl Row {
             peak_memory_bytes: None,
             warnings: Vec::new(),
             ranks: None,
-        }
-    }
-
-    /// The row of a solve without errors, energy, expected orders and the names of constraint set and solver.
-    pub(super) fn of<const D: usize>(
-        scene: &str,
-        scheme: &str,
-        level: usize,
-        solved: &Solved<'_, D>,
-    ) -> Self {
-        let (mesh, solution) = (solved.mesh(), solved.solution());
-        let [cells, unknowns, nonzeros] = solved.sizes().map(|n| n as usize);
-        let forces = solved.multiplier();
-        let mut warnings = solved.warnings().to_vec();
-        warnings.extend(warnings_of_forces(solved, forces.as_deref()));
-        let solve_seconds = solved.solve_seconds + solved.start_seconds;
-        let row = Self::new(scene, D, scheme, level, solved.outcome());
-        let point = |at: &HistoryPoint| {
-            (at.systems, at.seconds, Some(at.certificate).filter(|largest| largest.is_finite()))
-        };
-        let explanation = explanation(solved.inequality(), solved.outcome());
-        Self {
-            message: explanation.or(row.message),
-            parameters: solved.discretisation().form().theory().parameters,
-            linear: solution.linear_solver.to_owned(),
-            cells,
-            unknowns: Some(unknowns),
-            nonzeros: Some(nonzeros),
-            mesh_size: mesh.mesh_size(),
-            objective: solved.objective(),
-            active: solved.active(),
-            contact_measure: solved.contact_measure(),
-            resultant: forces.map(|forces| solved.resultant_of(&forces)),
-            resultants: solved.resultants(),
-            iterations: Iterations {
-                outer: solved.outer(),
-                linear: solution.linear,
-                levels: solved.coarser_levels,
-                systems: solved.outer().and(solution.systems),
-                start_cycles: solved.start_cycles,
-                stages: solution.stages.clone(),
-            },
-            certificate: solved.certificate(),
-            rounding: solved.rounding(),
-            seconds: Seconds {
-                start: Some(solved.start_seconds),
-                ..Seconds::new(solved.mesh_seconds, solved.system().assemble_seconds, solve_seconds)
-            },
-            history: (!solution.history.is_empty())
-                .then(|| solution.history.iter().map(point).collect()),
-            warnings,
-            ..row
-        }
-    }
-
-    /// Sets the penetration, with its warning.
-    pub(super) fn set_penetration(&mut self, found: Option<Penetration>) {
-        self.penetration = found.map(|found| found.largest()).filter(|most| most.is_finite());
-        self.warnings.extend(found.and_then(|found| found.remark()));
-    }
-
-    /// Sets the values by name, with their errors where the values of the solution are known.
-    pub(super) fn set_values<const D: usize>(
-        &mut self,
-        wanted: &[(String, ValueOf<D>)],
-        found: &[FoundValue<D>],
-        known: &[Option<f64>],
-    ) {
-        for (k, ((name, _), found)) in wanted.iter().zip(found).enumerate() {
-            self.values.insert(name.clone(), found.value);
-            if let Some(place) = found.place {
-                self.values_at.insert(name.clone(), place.as_slice().to_vec());
-            }
-            if let Some(known) = known.get(k) {
-                let error = found.value.zip(*known).map(|(a, b)| (a - b).abs());
-                self.error.values.insert(name.clone(), error);
-            }
         }
     }
 

@@ -6,45 +6,6 @@ use super::row::Row;
 #[cfg(feature = "report")]
 use super::row::distinct;
 
-/// The meshes of a series.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum Meshes {
-    /// Levels: subdivisions, or uniform refinements of a mesh.
-    Uniform,
-    /// Steps that follow the error bound.
-    Adaptive {
-        /// The share of the bound that each refinement marks.
-        theta: f64,
-    },
-}
-
-impl Meshes {
-    /// The meshes to which that of a row belongs.
-    #[must_use]
-    pub fn of(row: &Row) -> Self {
-        row.theta.map_or(Self::Uniform, |theta| Self::Adaptive { theta })
-    }
-    /// `uniform` or `adaptive`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Uniform => "uniform",
-            Self::Adaptive { .. } => "adaptive",
-        }
-    }
-    /// Whether the meshes follow the error bound.
-    pub fn is_adaptive(self) -> bool {
-        matches!(self, Self::Adaptive { .. })
-    }
-}
-
-#[cfg(feature = "report")]
-impl serde::Serialize for Meshes {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self.name())
-    }
-}
-
 /// A scheme with a solver on a scene and one kind of meshes: the rows of a series have it in common.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize))]
@@ -56,10 +17,15 @@ pub struct Variant {
     pub label: String,
     /// Name of the solver.
     pub solver: String,
-    /// The linear solver asked for; none where the rows do not say.
-    pub linear_asked: Option<String>,
-    /// The meshes.
-    pub meshes: Meshes,
+    /// The share of the error bound that each refinement marks; none of uniform meshes. In files the kind of meshes.
+    #[cfg_attr(feature = "report", serde(rename = "meshes", serialize_with = "kind_of_meshes"))]
+    pub theta: Option<f64>,
+}
+
+/// Writes `uniform` or `adaptive`.
+#[cfg(feature = "report")]
+fn kind_of_meshes<S: serde::Serializer>(theta: &Option<f64>, to: S) -> Result<S::Ok, S::Error> {
+    to.serialize_str(if theta.is_some() { "adaptive" } else { "uniform" })
 }
 
 impl Variant {
@@ -67,31 +33,15 @@ impl Variant {
     #[must_use]
     pub fn of(row: &Row) -> Self {
         let [scene, label, solver] = [&row.scene, &row.label, &row.solver].map(String::clone);
-        let linear_asked = row.linear_asked.clone();
-        Self { scene, label, solver, linear_asked, meshes: Meshes::of(row) }
+        Self { scene, label, solver, theta: row.theta }
     }
-    /// The name of the variant among others of a report: its label, and what else varies in the report.
-    pub fn name_among<'v>(&self, all: impl IntoIterator<Item = &'v Variant> + Clone) -> String {
-        let varies = |differs: fn(&Variant, &Variant) -> bool| {
-            all.clone().into_iter().any(|other| differs(self, other))
-        };
-        let mut name = self.label.clone();
-        let mut add = |text: &str| name += &format!(", {text}");
-        if varies(|a, b| a.solver != b.solver) {
-            add(&self.solver);
+    /// The name of the variant among others of a report: its label, with the solver where there are several.
+    pub fn name_among<'v>(&self, all: impl IntoIterator<Item = &'v Variant>) -> String {
+        let mut solvers = all.into_iter().map(|other| &other.solver);
+        match solvers.any(|solver| *solver != self.solver) {
+            true => format!("{}, {}", self.label, self.solver),
+            false => self.label.clone(),
         }
-        if varies(|a, b| a.linear_asked != b.linear_asked) {
-            self.linear_asked.iter().for_each(|linear| add(linear));
-        }
-        if varies(|a, b| a.meshes.name() != b.meshes.name()) {
-            add(self.meshes.name());
-        }
-        if let Meshes::Adaptive { theta } = self.meshes
-            && varies(|a, b| b.meshes.is_adaptive() && a.meshes != b.meshes)
-        {
-            add(&format!("theta {theta}"));
-        }
-        name
     }
 }
 

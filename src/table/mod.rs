@@ -58,10 +58,6 @@ impl Cell {
     pub(crate) fn fixed(x: Option<f64>) -> Self {
         Self::number(x.map(fixed))
     }
-    /// Seconds in six characters.
-    pub(crate) fn seconds(x: f64) -> Self {
-        Self::number(Some(seconds(x)))
-    }
 
     /// The text of the cell, without a mark.
     pub(crate) fn plain(&self) -> String {

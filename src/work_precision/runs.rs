@@ -31,7 +31,5 @@ impl Row {
         }
         let runs = self.runs.get_or_insert_default();
         runs.insert(runs.partition_point(|run| *run <= total), total);
-        let peaks = [self.peak_memory_bytes, again.peak_memory_bytes];
-        self.peak_memory_bytes = peaks.into_iter().flatten().min();
     }
 }

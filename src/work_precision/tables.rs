@@ -5,7 +5,7 @@ use super::verdict::at_common_error;
 use super::work_at_error::{Standing, WorkAtError};
 use crate::measure::ErrorNorm;
 use crate::study::row::distinct;
-use crate::study::series::{by_scene, series_of};
+use crate::study::series::series_of;
 use crate::study::{Row, Seconds, Series, Variant};
 use crate::table::{Cell, Table, fixed};
 
@@ -17,8 +17,8 @@ const MARKS: &str = "> t: not reached by the finest level, which takes t; < t: u
     level, which takes t; not run: the scheme was not run on this scene or on a finer level that was \
     asked for; failed: the level that would decide did not converge";
 
-/// Costs and times to reach errors, scene by scene: the summary of a report.
-pub(crate) fn summary(all: &[Row], reach: &[WorkAtError]) -> Vec<Table> {
+/// Costs and times to reach errors, scene by scene.
+pub(super) fn costs_and_times(all: &[Row], reach: &[WorkAtError]) -> Vec<Table> {
     let variants: Vec<Variant> = series_of(all).into_iter().map(|series| series.variant).collect();
     let mut tables = Vec::new();
     for scene in distinct(all.iter().map(|row| row.scene.as_str())) {
@@ -35,11 +35,6 @@ pub(crate) fn summary(all: &[Row], reach: &[WorkAtError]) -> Vec<Table> {
         }
     }
     tables
-}
-
-/// Where the time went, scene by scene.
-pub(crate) fn details(all: &[Row]) -> Vec<Table> {
-    by_scene(&series_of(all)).into_iter().map(|(scene, series)| phases(scene, &series)).collect()
 }
 
 /// The remark that explains the column of spreads.
@@ -94,8 +89,8 @@ fn time(at: &WorkAtError) -> Cell {
     }
 }
 
-/// Where the time of the fastest run went, how far the run in the middle is from it, and the peak of memory.
-fn phases(scene: &str, series: &[&Series<'_>]) -> Table {
+/// Where the time of the fastest run went, and how far the run in the middle is from it.
+pub(super) fn phases(scene: &str, series: &[&Series<'_>]) -> Table {
     let line = |(name, row): (&String, &Row)| {
         let Seconds { mesh, assemble, solve, start, bound, total } = row.seconds;
         let mut cells = vec![Cell::Words(name.clone()), Cell::whole(Some(row.level))];
@@ -104,7 +99,6 @@ fn phases(scene: &str, series: &[&Series<'_>]) -> Table {
         cells.extend(seconds.map(|x| Cell::digits(x, 2)));
         cells.push(Cell::number(row.median_over_least().map(fixed)));
         cells.push(Cell::whole(row.runs.as_ref().map(Vec::len)));
-        cells.push(Cell::number(row.peak_memory_bytes.map(|b| format!("{:.0}", b as f64 / 1e6))));
         cells
     };
     let rows = series.iter().flat_map(|of| of.rows.iter().map(move |&row| (&of.name, row)));
@@ -112,8 +106,8 @@ fn phases(scene: &str, series: &[&Series<'_>]) -> Table {
     Table {
         remarks: vec![SPREAD.to_owned()],
         ..Table::new(
-            format!("{scene}: phases of the fastest run, in seconds, and memory"),
-            "scheme,n,mesh,assembly,start,solve,bound,total,spread,runs,MB",
+            format!("{scene}: phases of the fastest run, in seconds"),
+            "scheme,n,mesh,assembly,start,solve,bound,total,spread,runs",
             rows,
         )
     }

@@ -6,12 +6,12 @@ use crate::study::Variant;
 
 /// The work of all variants in a scene at the smallest error that the most of them reach: in L2, and by the bound where
 /// meshes are adaptive or no error is known. Empty without errors and bounds.
-pub(crate) fn at_common_error<'a>(reach: &'a [WorkAtError], scene: &str) -> Vec<&'a WorkAtError> {
+pub(super) fn at_common_error<'a>(reach: &'a [WorkAtError], scene: &str) -> Vec<&'a WorkAtError> {
     let mut of_scene: Vec<&WorkAtError> =
         reach.iter().filter(|r| r.variant.scene == scene).collect();
     let in_l2 = |r: &&WorkAtError| r.norm == ErrorNorm::L2;
     let by_bound =
-        !of_scene.iter().any(in_l2) || of_scene.iter().any(|r| r.variant.meshes.is_adaptive());
+        !of_scene.iter().any(in_l2) || of_scene.iter().any(|r| r.variant.theta.is_some());
     let norm = if by_bound { ErrorNorm::Bound } else { ErrorNorm::L2 };
     of_scene.retain(|r| r.norm == norm);
     let reached =
@@ -26,14 +26,14 @@ pub(crate) fn at_common_error<'a>(reach: &'a [WorkAtError], scene: &str) -> Vec<
 /// The sentence about a scene: at the error of [`at_common_error`], how many times the time of each
 /// other variant the subject takes. The subject is the first variant of that label that gets there,
 /// otherwise the fastest. Nothing without errors and bounds.
-pub(crate) fn verdict(reach: &[WorkAtError], scene: &str, subject: &str) -> Option<String> {
+pub(super) fn verdict(reach: &[WorkAtError], scene: &str, subject: Option<&str>) -> Option<String> {
     let here = at_common_error(reach, scene);
     let error = here.first()?.error;
     let variants: Vec<Variant> = here.iter().map(|r| r.variant.clone()).collect();
     let (there, missing): (Vec<&WorkAtError>, Vec<&WorkAtError>) =
         here.into_iter().partition(|r| r.seconds.is_some());
     let fastest = || there.iter().find(|r| r.ratio == Some(1.0));
-    let named = there.iter().find(|r| r.variant.label == subject);
+    let named = there.iter().find(|r| Some(&r.variant.label[..]) == subject);
     let chosen = *named.or_else(fastest)?;
     let seconds_of = |r: &WorkAtError| r.seconds.expect("those that get there have a time");
     let others = there.iter().filter(|r| r.variant != chosen.variant).map(|r| {

@@ -17,7 +17,7 @@ fn pages_of_help_fit_a_screen_and_have_groups_and_examples() {
     for (name, groups) in [
         ("compare", &["Problem:", "Schemes:", "Meshes:", "Solver:", "Output:"][..]),
         ("stability", &["Problem:", "Schemes:", "Meshes:", "Solver:", "Output:"]),
-        ("pictures", &["Problem:", "Schemes:", "Meshes:", "Output:"]),
+        ("pictures", &["Problem:", "Schemes:", "Meshes:", "Solver:", "Output:"]),
         ("judge", &["Problem:", "Output:"]),
     ] {
         let page = |option: &str| stdout(&command(name).arg(option).output().unwrap());

@@ -210,7 +210,7 @@ fn the_other_commands_end_at_an_interrupt() {
         let output = child.wait_with_output().unwrap();
         let message = stderr(&output);
         assert_eq!(output.status.code(), Some(130), "{name}: {message}");
-        assert!(message.contains("interrupted; the report has"), "{name}: {message}");
+        assert!(message.contains("interrupted; "), "{name}: {message}");
         let report = read_json(&scratch.0.join("out").join(file));
         assert_eq!(report["complete"], false, "{name}");
         fs::remove_dir_all(scratch.0.join("out")).unwrap();

@@ -4,7 +4,7 @@
 use std::process::Command;
 use std::process::Output;
 
-use super::run::{Scratch, command, data, program, read_json, refused, rows, stderr};
+use super::run::{Scratch, command, data, read_json, refused, rows, stderr};
 use super::square::Square;
 use unilateral::input::LARGEST_FILE;
 
@@ -31,18 +31,6 @@ fn devices_and_pipes_are_not_read() {
     for path in ["/dev/zero", "/dev/urandom", &pipe] {
         refused(&scratch, &["--mesh", path], &["cannot read", path, "not a regular file"]);
     }
-}
-
-#[test]
-fn the_variable_for_threads_has_the_limit_of_the_option() {
-    for name in ["list", "compare", "stability", "pictures", "work-precision"] {
-        let output = command(name).env("RAYON_NUM_THREADS", "100000").output().unwrap();
-        assert_eq!(output.status.code(), Some(2), "{name}");
-        let expected = "error: RAYON_NUM_THREADS 100000: must be at most 1024\n";
-        assert_eq!(stderr(&output), expected, "{name}");
-    }
-    let listed = program().arg("--list").env("RAYON_NUM_THREADS", "1024").output().unwrap();
-    assert_eq!(listed.status.code(), Some(0), "{}", stderr(&listed));
 }
 
 /// One line, not much longer than the lists it may contain, without control characters.

@@ -106,12 +106,11 @@ fn the_other_commands_refuse_before_the_work_too() {
         (
             "work-precision",
             format!("--scene radial-2d --scheme p1,cr --subject sipg --out {out}"),
-            "--subject sipg: no scheme has this label; there are: cr, p1",
+            "--subject sipg: no scheme has this label; there are: p1, cr",
         ),
         ("work-precision", format!("--resume --out {out}"), "--resume"),
         ("compare", format!("--rounds 0 --out {out}"), "--rounds 0: must be at least 1"),
-        ("compare", format!("--linear direct,iterative --out {out}"), "--rounds"),
-        ("pictures", format!("--level 0 --out {out}"), "level"),
+        ("pictures", format!("--levels 0 --out {out}"), "level"),
         ("pictures", format!("--out {below}"), "cannot write"),
     ] {
         let output = command(name).args(options.split(' ')).output().unwrap();

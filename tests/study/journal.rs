@@ -150,10 +150,8 @@ fn another_request_is_refused_and_nothing_changes() {
     assert!(!scratch.0.join("report.json").exists() && scratch.read("report.jsonl") == rows);
     fs::write(scratch.0.join("report.json"), report).unwrap();
     fs::write(scratch.0.join("report.json"), "{\"program\"").unwrap();
-    let error = Journal::resume(&scratch.0, program(), &keys).unwrap_err().to_string();
-    let expected =
-        "report.json: it is no report, or damaged, at line 1, column 10: delete it, the rows are";
-    assert!(error.contains(expected), "{error}");
+    let error = Report::read(&scratch.0).unwrap_err().to_string();
+    assert!(error.contains("report.json: EOF while parsing"), "{error}");
 }
 
 #[test]
@@ -175,15 +173,14 @@ fn rows_without_their_report_are_taken_up() {
     let lines: Vec<&str> = lines.lines().collect();
     fs::write(&path, [lines[0], "{\"scene\": 3}", lines[2], ""].join("\n")).unwrap();
     let error = Journal::resume(&scratch.0, program(), &keys).unwrap_err().to_string();
-    let expected =
-        "report.jsonl: line 2 is no row (column 11): delete the line, its row runs again";
-    assert!(error.contains(expected), "{error}");
+    let expected = "report.jsonl: line 2: invalid type";
+    assert!(error.contains(expected) && error.contains("delete it, its row runs again"), "{error}");
     fs::write(&path, [lines[0], lines[2], ""].join("\n")).unwrap();
     let resumed = Journal::resume(&scratch.0, program(), &keys).unwrap();
     assert_eq!(resumed.report().rows.len(), 2);
     // rows of which nothing says whose they are are not taken
     fs::remove_file(scratch.0.join("report.json")).unwrap();
-    for (request, why) in [(Some("{\"name\""), "no request, or damaged"), (None, "No such file")] {
+    for (request, why) in [(Some("{\"name\""), "EOF while parsing"), (None, "No such file")] {
         let path = scratch.0.join("request.json");
         match request {
             Some(text) => fs::write(path, text).unwrap(),

@@ -13,7 +13,6 @@ mod hierarchies;
 mod journal;
 mod links;
 mod memory;
-mod memory_estimate;
 mod named_schemes;
 mod noise;
 mod one_problem;

@@ -1,6 +1,5 @@
 //! Runs that would not fit into the memory, and the peak of the process.
 
-use unilateral::element::P2;
 use unilateral::inequality::{ActiveSet, Outcome};
 use unilateral::linear::LinearMethod;
 use unilateral::prelude::*;
@@ -29,7 +28,6 @@ fn a_level_that_does_not_fit_is_a_row_and_its_mesh_is_not_built() {
     };
     let [needed, available] = ["would need about ", "GB of memory, "].map(gigabytes);
     assert!(needed > 1e3 && available < needed, "{message}");
-    assert!((study().levels([200]).memory_bytes().unwrap() / (1e9 * needed) - 1.0).abs() < 1e-3);
     assert_eq!((row.cells, row.unknowns), (48_000_000, None));
     let scratch = Scratch::new("memory");
     report.write(&scratch.0).unwrap();
@@ -45,24 +43,6 @@ fn the_first_mesh_of_a_refinement_is_held_against_the_memory_before_it_is_built(
     assert!(message.starts_with("scheme sipg, level 200: would need about"), "{message}");
     assert!(message.ends_with("choose fewer unknowns"), "{message}");
     assert!(study.keys().is_empty());
-}
-
-/// Broken quadratics in space have 500 entries a cell: 4.3e9 at level 113.
-#[test]
-fn a_matrix_with_too_many_entries_is_refused_before_a_mesh_is_built() {
-    let study = |level: usize| {
-        let study = Study::<3>::new(scenes::radial(1.0)).scheme(ConformingP1);
-        study.scheme(Sipg::default().on(P2)).levels([2, level])
-    };
-    study(112).check().unwrap();
-    let error = study(113).check().unwrap_err();
-    assert!(matches!(error, Error::Parameter(_)), "{error}");
-    let message = error.to_string();
-    assert!(
-        message.starts_with("level = 113: the matrix of sipg-p2 there may have 4.3e9 entries"),
-        "{message}"
-    );
-    assert!(message.ends_with("a coarser level, a lower degree or more processes"), "{message}");
 }
 
 /// On Linux the peak is the one that the kernel keeps, which never falls.

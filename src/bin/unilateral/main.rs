@@ -22,7 +22,7 @@ use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
 #[cfg(unix)]
 use nix::sys::signal::{SigSet, Signal};
-use shared::{Failure, Request, check_environment, complain, print};
+use shared::{Failure, Request, complain, print};
 use unilateral::input::excerpt;
 
 /// Finite element schemes on variational inequalities: comparisons, measurements, pictures.
@@ -43,7 +43,7 @@ enum Command {
     #[command(visible_alias = WORK_PRECISION)]
     Compare(Box<compare::Options>),
     Stability(stability::Options),
-    Pictures(pictures::Options),
+    Pictures(Box<pictures::Options>),
     Judge(judge::Options),
     /// Names every scene, scheme, constraint placement and solver, as `compare --list` does
     List,
@@ -52,11 +52,12 @@ enum Command {
 fn main() -> ExitCode {
     #[cfg(unix)]
     take_full_files_as_errors();
-    let (code, message) = match parse().map_err(Failure::from).and_then(run) {
-        Ok(is_good) => (u8::from(!is_good), String::new()),
-        Err(Failure::Work(message)) => (1, message),
-        Err(Failure::Request(message)) => (2, message),
-    };
+    let (code, message) =
+        match parse(std::env::args_os().collect()).map_err(Failure::from).and_then(run) {
+            Ok(is_good) => (u8::from(!is_good), String::new()),
+            Err(Failure::Work(message)) => (1, message),
+            Err(Failure::Request(message)) => (2, message),
+        };
     // of several processes the first one says why
     if !message.is_empty() {
         complain(&message);
@@ -75,7 +76,6 @@ fn take_full_files_as_errors() {
 
 /// Runs a command; false for exit code 1.
 fn run(command: Command) -> Result<bool, Failure> {
-    check_environment()?;
     match command {
         Command::Compare(options) => Ok(compare::run(&options)?),
         Command::Stability(options) => stability::run(&options),
@@ -85,9 +85,9 @@ fn run(command: Command) -> Result<bool, Failure> {
     }
 }
 
-/// The command. Help and version are answered here and end the program.
-fn parse() -> Request<Command> {
-    let words = words(std::env::args_os().collect());
+/// The command of a command line. Help and version are answered here and end the program.
+fn parse(words: Vec<OsString>) -> Request<Command> {
+    let words = with_command(words);
     match Program::try_parse_from(&words) {
         Ok(program) => Ok(program.command),
         Err(wrong) if wrong.use_stderr() => Err(one_line(&wrong, &words)),
@@ -96,7 +96,7 @@ fn parse() -> Request<Command> {
 }
 
 /// The words of the command line, `compare` inserted where no command is named, and its rounds where they have a name.
-fn words(mut words: Vec<OsString>) -> Vec<OsString> {
+fn with_command(mut words: Vec<OsString>) -> Vec<OsString> {
     const OF_THE_PROGRAM: [&str; 4] = ["-h", "--help", "-V", "--version"];
     let first = words.get(1).map(|word| word.to_string_lossy());
     let is_option = |word: &str| word.starts_with('-') && !OF_THE_PROGRAM.contains(&word);

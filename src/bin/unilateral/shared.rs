@@ -7,11 +7,9 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use unilateral::error::Error;
-use unilateral::input::{beginning, excerpt, read_file};
+use unilateral::input::{beginning, read_file};
 use unilateral::nested::Solved;
 use unilateral::plot::Picture;
-use unilateral::scenes;
-use unilateral::scenes::{AnyScene, Parameters};
 use unilateral::scheme::NamedScheme;
 
 /// The error of a wrong request is one message.
@@ -39,64 +37,21 @@ impl From<String> for Failure {
     }
 }
 
-/// Makes sure before the work, not after it, that files can be written. A new file is not left there.
-pub fn check_writable<'p>(paths: impl IntoIterator<Item = &'p PathBuf>) -> Request<()> {
-    for path in paths {
-        let file_is_new = !path.exists();
-        let open = OpenOptions::new().append(true).create(true).open(path);
-        open.map_err(|e| cannot_write(path, e))?;
-        if file_is_new {
-            fs::remove_file(path).map_err(|e| cannot_write(path, e))?;
-        }
-    }
-    Ok(())
-}
-
-/// The ends of the names of files that runs write into a directory.
-const WRITTEN: [&str; 9] = ["json", "jsonl", "csv", "md", "tex", "html", "svg", "vtu", "pvd"];
-
-/// Refuses before the work files that are among those which the run has read, and directories in which one of these has
-/// a name as files of reports have.
-pub fn check_apart<'p>(
-    inputs: &[PathBuf],
-    files: impl IntoIterator<Item = &'p PathBuf>,
-    directories: impl IntoIterator<Item = &'p PathBuf>,
-) -> Request<()> {
-    let refuse = |output: &Path, input: &Path| {
+/// Makes sure before the work, not after it, that a file can be written that is none of those which the run reads. A new
+/// file is not left there.
+pub fn check_writable(path: &Path, inputs: &[PathBuf]) -> Request<()> {
+    let own = fs::canonicalize(path).ok();
+    let is_own = |input: &&PathBuf| own.is_some() && fs::canonicalize(input).ok() == own;
+    if let Some(input) = inputs.iter().find(is_own) {
         let why = format!("this run reads {}; choose another place", input.display());
-        Err(cannot_write(output, why))
-    };
-    for output in files {
-        if let Some(input) = inputs.iter().find(|input| is_same(input, output)) {
-            return refuse(output, input);
-        }
+        return Err(cannot_write(path, why));
     }
-    for directory in directories {
-        let is_written = |input: &&PathBuf| {
-            let end = input.extension().unwrap_or_default().to_ascii_lowercase();
-            // a file in the current directory has an empty path before its name
-            let folder = std::path::absolute(input).ok();
-            let folder = folder.as_ref().and_then(|path| path.parent());
-            WRITTEN.iter().any(|written| end == *written)
-                && folder.is_some_and(|folder| is_same(folder, directory))
-        };
-        if let Some(input) = inputs.iter().find(is_written) {
-            return refuse(&directory.join(input.file_name().unwrap_or_default()), input);
-        }
+    let open = OpenOptions::new().append(true).create(true).open(path);
+    open.map_err(|e| cannot_write(path, e))?;
+    match own {
+        Some(_) => Ok(()),
+        None => fs::remove_file(path).map_err(|e| cannot_write(path, e)),
     }
-    Ok(())
-}
-
-/// Whether two paths lead to one file or directory, by links too.
-fn is_same(one: &Path, other: &Path) -> bool {
-    #[cfg(unix)]
-    let file = |path: &Path| {
-        use std::os::unix::fs::MetadataExt;
-        fs::metadata(path).ok().map(|about| (about.dev(), about.ino()))
-    };
-    #[cfg(not(unix))]
-    let file = |path: &Path| fs::canonicalize(path).ok();
-    file(one).is_some_and(|own| file(other) == Some(own))
 }
 
 /// The exit code of an interrupted run.
@@ -159,30 +114,11 @@ pub fn cannot_write(path: &Path, why: impl std::fmt::Display) -> String {
 /// More threads than this hardly help anyone, and the system may fail to start them.
 pub const MOST_THREADS: usize = 1024;
 
-/// Refuses more threads in the variable that sets their number where no option does.
-pub fn check_environment() -> Request<()> {
-    const VARIABLE: &str = "RAYON_NUM_THREADS";
-    let threads = std::env::var(VARIABLE).ok().and_then(|text| text.parse::<usize>().ok());
-    match threads.filter(|&n| n > MOST_THREADS) {
-        Some(n) => Err(format!("{VARIABLE} {n}: must be at most {MOST_THREADS}")),
-        None => Ok(()),
-    }
-}
-
 /// Sets the number of threads; without one, all cores are used.
 pub fn use_threads(threads: Option<usize>) -> Request<()> {
     let Some(threads) = threads else { return Ok(()) };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
     pool.build_global().map_err(|e| format!("--threads {threads}: {e}"))
-}
-
-/// A scene by name, with its default parameters.
-pub fn scene(name: &str) -> Request<AnyScene> {
-    let entry = scenes::by_name(name).ok_or_else(|| {
-        let names: Vec<String> = scenes::catalogue().into_iter().map(|e| e.name).collect();
-        format!("there is no scene {}; there are: {}", excerpt(name), names.join(", "))
-    })?;
-    entry.make(&Parameters::default()).map_err(|e| e.to_string())
 }
 
 /// The schemes of an option whose value was cut at commas, or the default ones.

@@ -29,9 +29,9 @@ pub(crate) const CASE: Case = Case {
 };
 
 fn sweeps(study: &Plan<'_>) -> Result<Vec<Sweep>, Error> {
-    let levels = study.effort.pick([&[4, 8][..], &[8, 16, 32], &[8, 16, 32, 64]]);
-    let n_scenes = study.effort.pick([1, 1, 4]);
-    let strings = study.effort.pick([&[64, 128, 256][..], &[64, 128, 256], &[64, 128, 256, 512]]);
+    let levels = study.effort.pick(&[8, 16, 32][..], &[8, 16, 32, 64]);
+    let n_scenes = study.effort.pick(1, 4);
+    let strings = study.effort.pick(&[64, 128, 256][..], &[64, 128, 256, 512]);
     let mut sweeps = Vec::new();
     for scene in
         &["biactive-half-2d", "biactive-ring-2d", "degenerate4-2d", "lshape-2d"][..n_scenes]
@@ -39,7 +39,7 @@ fn sweeps(study: &Plan<'_>) -> Result<Vec<Sweep>, Error> {
         sweeps.extend([orders(scene, levels), steps(scene, levels)]);
     }
     sweeps.extend([orders("oscillating-1d", strings), steps("oscillating-1d", &strings[..1])]);
-    let finest = study.effort.pick([8, 16, 32]);
+    let finest = study.effort.pick(16, 32);
     sweeps.push(Sweep {
         compares: true,
         parameter: "h",

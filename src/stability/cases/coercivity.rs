@@ -26,7 +26,7 @@ pub(crate) const CASE: Case =
 const THRESHOLD: f64 = 3.0;
 
 fn sweeps(study: &Plan<'_>) -> Result<Vec<Sweep>, Error> {
-    let level = study.effort.pick([8, 8, 16]);
+    let level = study.effort.pick(8, 16);
     let factors = ["0.5", "1", "2", "2.9", "3.1", "4", "10", "1000"];
     let with_sigma = schemes(&factors.map(|sigma| format!("sipg@sigma={sigma}")).join(" "));
     // on Dirichlet facets |dK|/|K| with |dK| = (2 + root 2) h and |K| = h^2 / 2

@@ -23,8 +23,8 @@ const PARTS: [Part; 2] =
     [("not preconditioned", plain), ("diagonal of means and jumps", in_means_and_jumps)];
 
 pub(super) fn sweeps(effort: Effort) -> [Sweep; 2] {
-    let level = effort.pick([8, 8, 16]);
-    let exponents = effort.pick([&[-2, 2, 6][..], &[-2, 2, 6], &[-4, -2, 2, 4, 6]]);
+    let level = effort.pick(8, 16);
+    let exponents = effort.pick(&[-2, 2, 6][..], &[-4, -2, 2, 4, 6]);
     let over_factors = Sweep {
         schemes: with_eta("wopsip", exponents),
         beside: schemes("wopsip@eta=1"),
@@ -48,7 +48,6 @@ fn over_factors((name, condition): Part) -> Column {
     let is_plain = name == PARTS[0].0;
     Column::new(&OVER_FACTORS, &quantity, ratio)
         .asked(move |at| Asked::limit_unless(is_plain || at.value() < Some(1.0)))
-        .detail(move |at| in_words(condition(at)))
 }
 
 fn over_meshes((name, condition): Part) -> Column {
@@ -63,17 +62,11 @@ fn over_meshes((name, condition): Part) -> Column {
         (_, false) if !is_plain => Asked::NoRow,
         (_, is_over_penalised) => Asked::limit_unless(is_over_penalised && is_plain),
     };
-    Column::new(&OVER_MESHES, &format!("order of growth, {name}"), order)
-        .asked(asked)
-        .detail(move |at| in_words(condition(at)))
+    Column::new(&OVER_MESHES, &format!("order of growth, {name}"), order).asked(asked)
 }
 
 fn is_over_penalised(at: &At<'_>) -> bool {
     at.scheme().name() == "wopsip"
-}
-
-fn in_words(condition: Option<f64>) -> String {
-    condition.map_or_else(String::new, |number| format!("condition number {number:.3e}"))
 }
 
 /// The condition number of `B^-1 A`, `B` a diagonal matrix; none where a factorisation fails or Lanczos' method does not converge.

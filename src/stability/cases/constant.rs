@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use crate::problem::Datum;
-use crate::real::maximum;
 use crate::stability::table::*;
 
 const CONSTANT: Criterion = Criterion::new(
@@ -14,8 +13,8 @@ const CONSTANT: Criterion = Criterion::new(
 pub(crate) const CASE: Case = Case { name: "constant", criteria: &[CONSTANT], sweeps };
 
 fn sweeps(study: &Plan<'_>) -> Result<Vec<Sweep>, Error> {
-    let level = study.effort.pick([8, 8, 32]);
-    let constants = study.effort.pick([&[300.0, -1e7][..], &[300.0, -1e7], &[300.0, 1e5, -1e7]]);
+    let level = study.effort.pick(8, 32);
+    let constants = study.effort.pick(&[300.0, -1e7][..], &[300.0, 1e5, -1e7]);
     let at = |&constant: &f64| Place::new(with_constant(constant), level).at(constant);
     let quantity = "difference less c, in units of rounding of c";
     Ok(vec![Sweep {
@@ -23,8 +22,11 @@ fn sweeps(study: &Plan<'_>) -> Result<Vec<Sweep>, Error> {
         parameter: "c",
         places: [0.0].iter().chain(constants).map(at).collect(),
         columns: vec![
-            Column::new(&CONSTANT, quantity, difference)
-                .asked(|at| if at.place == 0 { Asked::NoRow } else { Asked::Limit(0) }),
+            Column::new(&CONSTANT, quantity, |at| {
+                let constant = at.value()?;
+                Some(at.difference(constant)? / (f64::EPSILON * constant.abs()))
+            })
+            .asked(|at| if at.place == 0 { Asked::NoRow } else { Asked::Limit(0) }),
         ],
         ..Sweep::default()
     }])
@@ -39,13 +41,4 @@ fn with_constant(constant: f64) -> Scene<2> {
         exact.value = Datum::Function(Arc::new(move |x| constant + value.at(x)));
     }
     scene
-}
-
-/// The largest difference between the solution of the shifted data less the constant and that of the data as they are, in
-/// units of rounding of the constant; none unless both converged.
-fn difference(at: &At<'_>) -> Option<f64> {
-    let (with, without, constant) = (at.values()?, at.first().values()?, at.value()?);
-    let apart = |(a, b): (&f64, &f64)| (a + constant - b).abs();
-    let largest = without.iter().zip(with).map(apart).fold(0.0, maximum);
-    Some(largest / (f64::EPSILON * constant.abs()))
 }

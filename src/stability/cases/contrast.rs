@@ -28,10 +28,9 @@ pub(crate) const CASE: Case =
     Case { name: "contrast", criteria: &[ERROR, ITERATIONS, ACROSS_FLUX, INSIDE_CELLS], sweeps };
 
 fn sweeps(study: &Plan<'_>) -> Result<Vec<Sweep>, Error> {
-    let [level, middle] = study.effort.pick([[8, 8], [16, 32], [32, 32]]);
-    let exponents =
-        study.effort.pick([&[-8, -4, 4, 8][..], &[-8, -4, 4, 8], &[-8, -6, -4, -2, 2, 4, 6, 8]]);
-    let levels = study.effort.pick([&[4, 8][..], &[8, 16, 32], &[8, 16, 32, 64]]);
+    let [level, middle] = study.effort.pick([16, 32], [32, 32]);
+    let exponents = study.effort.pick(&[-8, -4, 4, 8][..], &[-8, -6, -4, -2, 2, 4, 6, 8]);
+    let levels = study.effort.pick(&[8, 16, 32][..], &[8, 16, 32, 64]);
     let sweep = |places, columns| Sweep {
         compares: true,
         parameter: "contrast",
@@ -80,6 +79,6 @@ fn sweeps(study: &Plan<'_>) -> Result<Vec<Sweep>, Error> {
 fn relative(at: At<'_>) -> Option<f64> {
     let study = Study::<2>::new(at.scene()?.clone()).scheme(ConformingP1);
     let zeros = vec![0.0; at.mesh()?.vertices().len()];
-    let of_zeros = study.levels([at.place().level]).judge(&zeros).ok()?;
+    let of_zeros = study.levels([at.place().level]).judge(&zeros, None).ok()?;
     Some(at.of(ENERGY.1)? / of_zeros.error.energy?)
 }

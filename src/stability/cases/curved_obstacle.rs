@@ -38,8 +38,8 @@ pub(crate) const CASE: Case = Case {
 type Touched = (&'static str, f64, Asked);
 
 fn sweeps(study: &Plan<'_>) -> Result<Vec<Sweep>, Error> {
-    let levels = study.effort.pick([&[8][..], &[8, 16, 32], &[8, 16, 32, 64]]);
-    let fitted = study.effort.pick([&[4, 8][..], &[16, 32, 64], &[16, 32, 64]]);
+    let levels = study.effort.pick(&[8, 16, 32][..], &[8, 16, 32, 64]);
+    let fitted = [16, 32, 64];
     // the multiplier of the cone is not bounded
     let problems: [Touched; 2] =
         [("ball-2d", 0.697_965_148_223_373_6, Asked::Limit(0)), ("cone-2d", 0.5, Asked::Report)];
@@ -51,7 +51,7 @@ fn sweeps(study: &Plan<'_>) -> Result<Vec<Sweep>, Error> {
         };
         let quantity = "order of the multiplier in L1, fitted";
         let orders = Sweep {
-            places: Place::levels(scene, fitted),
+            places: Place::levels(scene, &fitted),
             columns: vec![Column::fitted(
                 &MULTIPLIER,
                 quantity,

@@ -44,18 +44,16 @@ pub(crate) const CASE: Case = Case {
     sweeps,
 };
 
-/// The level of forces: on coarser meshes the contact sets of vertices and of facet means differ by more than by
-/// rounding.
-const LEVEL_OF_FORCES: usize = 32;
+/// On coarser meshes the contact sets of vertices and of facet means differ by more than by rounding.
+const LEVEL: usize = 32;
 
 fn sweeps(study: &Plan<'_>) -> Result<Vec<Sweep>, Error> {
-    let level = study.effort.pick([8, 32, 32]);
-    let exponents = study.effort.pick([vec![-4, 2], vec![-4, 0, 2, 6, 10], (-4..=10).collect()]);
-    let large = study.effort.pick([vec![2], vec![2, 8, 14], (0..=14).collect()]);
+    let exponents = study.effort.pick(vec![-4, 0, 2, 6, 10], (-4..=10).collect());
+    let large = study.effort.pick(vec![2, 8, 14], (0..=14).collect());
     let mut sweeps = Vec::new();
     for scheme in ["wopsip", "wopsip:facet-means"] {
         for scene in ["polynomial-2d", "signorini-2d"] {
-            sweeps.push(factors(scheme, &exponents, Place::levels(scene, &[level])));
+            sweeps.push(factors(scheme, &exponents, Place::levels(scene, &[LEVEL])));
             sweeps.push(forces(with_eta(scheme, &large), scene));
         }
     }
@@ -86,7 +84,7 @@ fn factors(scheme: &str, exponents: &[i32], places: Vec<Place>) -> Sweep {
 }
 
 fn forces(of: Vec<NamedScheme>, scene: &str) -> Sweep {
-    let places = Place::levels(scene, &[LEVEL_OF_FORCES; 2]).into_iter();
+    let places = Place::levels(scene, &[LEVEL; 2]).into_iter();
     let precisions = [Precision::Double, Precision::Single];
     let is_single = |at: &At<'_>| at.place().precision == Precision::Single;
     // the factors of the active set have no quarter of the digits of single precision

@@ -29,15 +29,15 @@ pub(crate) const CASE: Case =
 const JUDGED: f64 = 1e6;
 
 fn sweeps(study: &Plan<'_>) -> Result<Vec<Sweep>, Error> {
-    let [strings, squares] = study.effort.pick([[7, 4], [10, 5], [15, 7]]);
+    let [strings, squares] = study.effort.pick([10, 5], [15, 7]);
     let mut sweeps = vec![
         halvings("sines-1d", strings, Precision::Double),
         halvings("sines-1d", strings.min(12), Precision::Single),
         halvings("sines-2d", squares, Precision::Single),
         halvings("sines-2d", squares, Precision::Double),
     ];
-    let level = study.effort.pick([16, 16, 32]);
-    let exponents = study.effort.pick([&[2, 6][..], &[2, 6], &[0, 2, 4, 6, 8, 10]]);
+    let level = study.effort.pick(16, 32);
+    let exponents = study.effort.pick(&[2, 6][..], &[0, 2, 4, 6, 8, 10]);
     for (scheme, scene) in [
         ("wopsip", "sines-2d"),
         ("wopsip:facet-means", "sines-2d"),

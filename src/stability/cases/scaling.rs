@@ -1,7 +1,6 @@
 //! Invariance under a change of units.
 
 use crate::problem::Datum;
-use crate::real::maximum;
 use crate::stability::table::*;
 
 const DOMAIN: Criterion = Criterion::new(
@@ -17,9 +16,9 @@ const COEFFICIENT: Criterion = Criterion::new(
 pub(crate) const CASE: Case = Case { name: "scaling", criteria: &[DOMAIN, COEFFICIENT], sweeps };
 
 fn sweeps(study: &Plan<'_>) -> Result<Vec<Sweep>, Error> {
-    let level = study.effort.pick([8, 8, 32]);
-    let lengths = study.effort.pick([&[1e-6, 1e6][..], &[1e-6, 1e6], &[1e-6, 1e-3, 1e3, 1e6]]);
-    let factors = study.effort.pick([&[1e-8, 1e8][..], &[1e-8, 1e8], &[1e-8, 1e-4, 1e4, 1e8]]);
+    let level = study.effort.pick(8, 32);
+    let lengths = study.effort.pick(&[1e-6, 1e6][..], &[1e-6, 1e-3, 1e3, 1e6]);
+    let factors = study.effort.pick(&[1e-8, 1e8][..], &[1e-8, 1e-4, 1e4, 1e8]);
     let sweep = |criterion, parameter, units: &[f64], scene: fn(f64) -> Scene<2>| {
         let at =
             |&unit: &f64| Place { shown: Some(level), ..Place::new(scene(unit), level).at(unit) };
@@ -28,13 +27,15 @@ fn sweeps(study: &Plan<'_>) -> Result<Vec<Sweep>, Error> {
             parameter,
             places: [1.0].iter().chain(units).map(at).collect(),
             columns: vec![
-                Column::new(criterion, "relative difference of solutions", difference).asked(
-                    |at| match at.place {
-                        // the units with which others are compared
-                        0 => Asked::NoRow,
-                        _ => Asked::limit_unless(at.scheme().options().eta.is_some()),
-                    },
-                ),
+                Column::new(criterion, "relative difference of solutions", |at| {
+                    let largest = at.first().values()?.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+                    Some(at.difference(0.0)? / largest)
+                })
+                .asked(|at| match at.place {
+                    // the units with which others are compared
+                    0 => Asked::NoRow,
+                    _ => Asked::limit_unless(at.scheme().options().eta.is_some()),
+                }),
             ],
             ..Sweep::default()
         }
@@ -53,11 +54,4 @@ fn with_coefficient(factor: f64) -> Scene<2> {
     scene.problem.source.everywhere = Some(Datum::Constant(-2.0 * factor));
     scene.problem = scene.problem.coefficient(move |_| factor);
     scene
-}
-
-/// The largest difference from the solution in units of one over the largest value of that.
-fn difference(at: &At<'_>) -> Option<f64> {
-    let (a, b) = (at.values()?, at.first().values()?);
-    let largest = b.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-    Some(a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, maximum) / largest)
 }

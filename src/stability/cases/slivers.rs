@@ -27,9 +27,8 @@ pub(crate) const CASE: Case =
     Case { name: "slivers", criteria: &[ERROR, DEFINITE, OBSTACLE, GIVEN], sweeps };
 
 fn sweeps(study: &Plan<'_>) -> Result<Vec<Sweep>, Error> {
-    let n = study.effort.pick([2, 4, 6]);
-    let heights =
-        study.effort.pick([&[1.0, 1e-3][..], &[1.0, 1e-3], &[1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-6]]);
+    let n = study.effort.pick(4, 6);
+    let heights = study.effort.pick(&[1.0, 1e-3][..], &[1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-6]);
     let on_slivers = |scene: fn() -> Scene<3>| {
         let place = |&height: &f64| {
             Ok(Place::on_mesh(scene().domain(slivers(1.0, n, height)?), Some(n)).at(height))

@@ -2,12 +2,11 @@
 
 use std::fmt;
 
-use crate::inequality::Outcome;
-use crate::measure::{ErrorNorm, Errors, FittedOrder, fit_order};
+use crate::measure::{ErrorNorm, FittedOrder, fit_order};
 use crate::readable_debug::debug_by_display;
-use crate::scheme::ExpectedOrders;
 use crate::study::report::Report;
-use crate::study::row::{Orders, Row};
+use crate::study::row::Row;
+use crate::study::series::Series;
 
 /// An error of this share of the mesh size, of solutions whose size is one, is rounding.
 const ROUNDING: f64 = 1e-8;
@@ -77,168 +76,110 @@ impl OrderVerdict {
     }
 }
 
-/// Observed orders of one scheme on one scene, fitted over all levels that converged.
-#[derive(Clone, Debug, PartialEq)]
+/// The order of the error of one series in one norm, fitted over all levels that converged, beside the promised one.
+#[derive(Clone, PartialEq)]
 #[non_exhaustive]
-pub struct ObservedOrders {
+pub struct ObservedOrder {
     /// Name of the scene.
     pub scene: String,
     /// Label of the scheme.
     pub label: String,
     /// Where the scheme imposes bounds.
     pub constraint: String,
+    /// The norm: L2, or the broken H1 seminorm.
+    pub norm: ErrorNorm,
     /// The levels that converged, the finest last.
     pub levels: Vec<usize>,
-    /// The order in L2; none where there are no two errors.
-    pub l2: Option<FittedOrder>,
-    /// The order in the broken H1 seminorm.
-    pub h1: Option<FittedOrder>,
-    /// The orders that theory promises.
-    pub promised: ExpectedOrders,
-    /// Norms in which the error on the finest level, or on all levels, is rounding.
-    pub exact: Vec<ErrorNorm>,
-    /// Levels that did not converge, with the typed reason.
-    pub failures: Vec<(usize, Outcome)>,
-}
-
-/// The norms in which theory promises orders.
-const PROMISED: [ErrorNorm; 2] = [ErrorNorm::L2, ErrorNorm::H1];
-
-/// A promise that was not seen to be kept.
-#[derive(Clone, PartialEq)]
-#[non_exhaustive]
-pub struct OrderMissed {
-    /// The orders observed, of which this one is missed.
-    pub observed: ObservedOrders,
-    /// The norm.
-    pub norm: ErrorNorm,
-    /// The order promised.
-    pub promised: f64,
-    /// Why it does not count as kept.
+    /// The order; none where there are no two errors above rounding.
+    pub fitted: Option<FittedOrder>,
+    /// The order that theory promises.
+    pub promised: Option<f64>,
+    /// The verdict.
     pub verdict: OrderVerdict,
 }
 
-impl fmt::Display for OrderMissed {
+impl fmt::Display for ObservedOrder {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { observed, norm, promised, verdict } = self;
-        let ObservedOrders { scene, label, constraint, levels, .. } = observed;
-        let levels = levels_in_words(levels);
-        write!(f, "{label} ({constraint}) on {scene}: {}: ", verdict.name())?;
-        match (observed.fitted(*norm), verdict) {
-            (Some(fitted), OrderVerdict::Missed | OrderVerdict::Undecided) => {
-                write!(f, "order {} in {norm} over levels {levels}", order_in_words(fitted))?;
+        let Self { scene, label, constraint, norm, levels, .. } = self;
+        let levels = match &levels[..] {
+            [] => "none".to_owned(),
+            [only] => format!("{only} (1)"),
+            [first, .., last] => format!("{first} to {last} ({})", levels.len()),
+        };
+        write!(f, "{label} ({constraint}) on {scene}: {}: ", self.verdict.name())?;
+        match &self.fitted {
+            Some(FittedOrder { order, spread, .. })
+                if self.verdict != OrderVerdict::TooFewLevels =>
+            {
+                write!(f, "order {order:.2} ± {:.2} in {norm} over levels {levels}", 0.5 * spread)?;
             }
             _ => write!(f, "{levels} converged with an error in {norm}, four are needed")?,
         }
-        write!(f, ", promised {promised}")
+        self.promised.map_or(Ok(()), |promised| write!(f, ", promised {promised}"))
     }
 }
-
-impl std::error::Error for OrderMissed {}
 
 /// All promises of a report that were not seen to be kept; at least one.
 #[derive(Clone, PartialEq, thiserror::Error)]
 #[error("{}", self.0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
-pub struct OrdersMissed(pub Vec<OrderMissed>);
+pub struct OrdersMissed(pub Vec<ObservedOrder>);
 
 // so that a `main` that returns it prints what was missed, and not fields
-debug_by_display!(OrderMissed, OrdersMissed);
-
-/// First and last level, with their number.
-fn levels_in_words(levels: &[usize]) -> String {
-    match levels {
-        [] => "none".to_owned(),
-        [only] => format!("{only} (1)"),
-        [first, .., last] => format!("{first} to {last} ({})", levels.len()),
+impl fmt::Debug for ObservedOrder {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{self}")
     }
 }
+debug_by_display!(OrdersMissed);
 
-/// The order and half its spread.
-fn order_in_words(fitted: &FittedOrder) -> String {
-    let FittedOrder { order, spread, .. } = fitted;
-    match spread.is_finite() {
-        true => format!("{order:.2} ± {:.2}", 0.5 * spread),
-        false => format!("{order:.2}"),
-    }
-}
-
-impl ObservedOrders {
-    /// The order in a norm; none in norms without promises.
-    pub fn fitted(&self, norm: ErrorNorm) -> Option<&FittedOrder> {
-        match norm {
-            ErrorNorm::L2 => self.l2.as_ref(),
-            ErrorNorm::H1 => self.h1.as_ref(),
-            ErrorNorm::Energy | ErrorNorm::Bound => None,
-        }
-    }
-    /// The order that theory promises in a norm.
-    pub fn promised(&self, norm: ErrorNorm) -> Option<f64> {
-        match norm {
-            ErrorNorm::L2 => self.promised.l2,
-            ErrorNorm::H1 => self.promised.h1,
-            ErrorNorm::Energy | ErrorNorm::Bound => None,
-        }
-    }
-    /// The verdict in a norm.
-    pub fn verdict(&self, norm: ErrorNorm, tolerance: f64) -> OrderVerdict {
-        match self.promised(norm) {
-            _ if self.exact.contains(&norm) => OrderVerdict::Exact,
-            None => OrderVerdict::NothingPromised,
-            Some(promised) => OrderVerdict::on(self.fitted(norm), promised, tolerance),
-        }
-    }
-    /// The promises that are missed by more than the tolerance, or that cannot be tested.
-    pub fn missed(&self, tolerance: f64) -> Vec<OrderMissed> {
-        let miss = |norm: ErrorNorm| {
-            let verdict = self.verdict(norm, tolerance);
-            let passes = [OrderVerdict::Kept, OrderVerdict::Exact, OrderVerdict::NothingPromised];
-            let promised = self.promised(norm).filter(|_| !passes.contains(&verdict))?;
-            Some(OrderMissed { observed: self.clone(), norm, promised, verdict })
-        };
-        PROMISED.into_iter().filter_map(miss).collect()
-    }
-
-    /// The observed orders of a series, whose rows go from coarse to fine.
-    fn of(mut sorted: Vec<&Row>) -> Option<Self> {
-        let failed = sorted.iter().filter(|row| !row.converged());
-        let failures = failed.map(|row| (row.level, row.status)).collect();
-        let finest = *sorted.last()?;
-        sorted.retain(|row| row.converged());
-        // errors that are rounding tell no order
-        let fit = |norm: fn(&Errors) -> Option<f64>, above: fn(&Orders) -> Option<f64>| {
-            sorted.iter().map(|row| norm(&row.error)).collect::<Option<Vec<_>>>()?;
-            let point = |row: &&Row| Some((row.size(), above(&row.errors_above_rounding())?));
-            fit_order(&sorted.iter().filter_map(point).collect::<Vec<_>>())
-        };
-        let is_exact = |norm: fn(&Errors) -> Option<f64>, above: fn(&Orders) -> Option<f64>| {
+impl ObservedOrder {
+    /// The orders of a series in L2 and H1.
+    fn of(series: &Series<'_>, tolerance: f64) -> [Self; 2] {
+        let rows: Vec<&Row> = series.rows.iter().copied().filter(|row| row.converged()).collect();
+        let finest = series.rows[series.rows.len() - 1];
+        [ErrorNorm::L2, ErrorNorm::H1].map(|norm| {
+            let in_norm = |l2: Option<f64>, h1: Option<f64>| match norm {
+                ErrorNorm::L2 => l2,
+                _ => h1,
+            };
+            let error = |row: &Row| in_norm(row.error.l2, row.error.h1);
+            // errors that are rounding tell no order
+            let above = |row: &Row| {
+                let above = row.errors_above_rounding();
+                in_norm(above.l2, above.h1)
+            };
+            let points: Vec<_> =
+                rows.iter().filter_map(|row| Some((row.size(), above(row)?))).collect();
+            let fitted = match rows.iter().all(|row| error(row).is_some()) {
+                true => fit_order(&points),
+                false => None,
+            };
             let is_small = |error: f64| error <= ROUNDING * finest.mesh_size.min(1.0);
-            let are_rounding =
-                || sorted.iter().all(|r| above(&r.errors_above_rounding()).is_none());
-            let finest = sorted.last().and_then(|row| norm(&row.error));
-            finest.is_some_and(|error| is_small(error) || are_rounding())
-        };
-        let exact = [
-            (ErrorNorm::L2, is_exact(|e| e.l2, |above| above.l2)),
-            (ErrorNorm::H1, is_exact(|e| e.h1, |above| above.h1)),
-        ];
-        Some(Self {
-            scene: finest.scene.clone(),
-            label: finest.label.clone(),
-            constraint: finest.constraint.clone(),
-            levels: sorted.iter().map(|row| row.level).collect(),
-            l2: fit(|e| e.l2, |above| above.l2),
-            h1: fit(|e| e.h1, |above| above.h1),
-            promised: finest.expected_order,
-            exact: exact.into_iter().filter(|e| e.1).map(|e| e.0).collect(),
-            failures,
+            let last = rows.last().and_then(|row| error(row));
+            let promised = in_norm(finest.expected_order.l2, finest.expected_order.h1);
+            let verdict = match promised {
+                _ if last.is_some_and(|e| is_small(e) || points.is_empty()) => OrderVerdict::Exact,
+                None => OrderVerdict::NothingPromised,
+                Some(promised) => OrderVerdict::on(fitted.as_ref(), promised, tolerance),
+            };
+            Self {
+                scene: finest.scene.clone(),
+                label: finest.label.clone(),
+                constraint: finest.constraint.clone(),
+                norm,
+                levels: rows.iter().map(|row| row.level).collect(),
+                fitted,
+                promised,
+                verdict,
+            }
         })
     }
 }
 
 impl Report {
-    /// Observed orders of every [series](Report::series).
-    pub fn observed_orders(&self) -> Vec<ObservedOrders> {
-        self.series().into_iter().filter_map(|series| ObservedOrders::of(series.rows)).collect()
+    /// Observed orders of every [series](Report::series) in L2 and H1, each with the verdict for this tolerance.
+    pub fn observed_orders(&self, tolerance: f64) -> Vec<ObservedOrder> {
+        self.series().iter().flat_map(|series| ObservedOrder::of(series, tolerance)).collect()
     }
 
     /// Tests every promise of theory. An order is fitted over the levels on which a scheme converged on a
@@ -256,10 +197,11 @@ impl Report {
     /// ```
     ///
     /// # Errors
-    /// [`OrdersMissed`], naming every row that misses.
+    /// [`OrdersMissed`], naming every order that misses.
     pub fn assert_orders(&self, tolerance: f64) -> Result<(), OrdersMissed> {
-        let observed = self.observed_orders();
-        let missed: Vec<_> = observed.iter().flat_map(|o| o.missed(tolerance)).collect();
+        use OrderVerdict::{Exact, Kept, NothingPromised};
+        let mut missed = self.observed_orders(tolerance);
+        missed.retain(|of| !matches!(of.verdict, Kept | Exact | NothingPromised));
         if missed.is_empty() { Ok(()) } else { Err(OrdersMissed(missed)) }
     }
 }

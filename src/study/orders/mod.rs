@@ -2,7 +2,6 @@
 
 mod check;
 mod fill;
-pub(crate) mod rates;
 
-pub use check::{ObservedOrders, OrderMissed, OrderVerdict, OrdersMissed};
+pub use check::{ObservedOrder, OrderVerdict, OrdersMissed};
 pub use fill::fill_orders;

@@ -7,7 +7,6 @@ use crate::nested::{AdaptiveIteration, AdaptiveMeshes, AdaptiveStep, Adaptivity}
 use crate::nested::{Hierarchy, NestedIteration, Phase, check_level};
 use crate::scheme::ExpectedOrders;
 use crate::study::memory::memory_of_process;
-use crate::study::reference::Measured;
 use crate::study::report::Report;
 use crate::study::row::{Row, Seconds};
 
@@ -84,15 +83,12 @@ impl<const D: usize> Study<'_, D> {
     }
 
     /// The report of all schemes and solvers.
-    pub(super) fn run_adaptive(
-        &self,
-        adaptivity: Adaptivity,
-        failure: Option<&str>,
-    ) -> Result<Report, Error> {
+    pub(super) fn run_adaptive(&self, adaptivity: Adaptivity) -> Result<Report, Error> {
         (self.observer)(Progress::Entered(Phase::Mesh));
-        let (mut rows, mut unwritten) = (Vec::new(), None);
+        let mut rows = Vec::new();
+        #[cfg(feature = "report")]
+        let mut unwritten = None;
         let first = self.first_mesh()?;
-        let measured = Measured { failure, reference: None };
         for entry in &self.entries {
             for solver in self.solvers() {
                 let meshes = AdaptiveMeshes::new(first.clone());
@@ -105,35 +101,43 @@ impl<const D: usize> Study<'_, D> {
                     let place = (format!("step {level} with {cells} cells"), cells as f64);
                     let fits = self.check_fits(&*entry.scheme, place, memory_of_process());
                     if let Err(error) = fits {
-                        let place = (level, cells as f64);
-                        let row = self.row_without_memory(entry, place, solver.name(), error)?;
+                        let place = (level, solver.name(), cells as f64);
+                        let row = self.row_without_memory(entry, place, error)?;
                         self.finish(row, &mut rows)?;
                         break;
                     }
                     let step = match steps.next() {
                         Some(Ok(step)) => step,
                         Some(Err(error)) => {
-                            let place = (level, meshes.finest());
-                            let name = solver.name();
-                            let row = self.row_without(entry, place, name, failure, error)?;
+                            let place = (level, solver.name(), meshes.finest());
+                            let row = self.row_without(entry, place, error)?;
                             self.finish(row, &mut rows)?;
                             break;
                         }
                         None => break,
                     };
-                    let row = self.row_of(entry, level, &step.solved, solver.name(), measured)?;
-                    let row = self.finish(adaptive_row(row, &step), &mut rows)?;
-                    // files are named after the last step: whether there is another one is known
-                    let last = level + usize::from(step.stop.is_none());
-                    let levels: Vec<usize> = (0..=last).collect();
-                    self.write_files(row, &levels, &step.solved, measured, &mut unwritten)?;
+                    let row = self.row_of(entry, (level, solver.name()), &step.solved, None)?;
+                    let row = adaptive_row(row, &step);
+                    #[cfg(feature = "report")]
+                    {
+                        // files are named after the last step: whether there is another one is known
+                        let last = level + usize::from(step.stop.is_none());
+                        let levels: Vec<usize> = (0..=last).collect();
+                        self.write_files(&row, &levels, &step.solved, None, &mut unwritten);
+                    }
+                    let row = self.finish(row, &mut rows)?;
+                    self.hand_over(row, &step.solved)?;
                     if step.stop.is_some() {
                         break;
                     }
                 }
             }
         }
-        unwritten.map_or_else(|| Ok(self.report(rows)), Err)
+        #[cfg(feature = "report")]
+        if let Some(error) = unwritten {
+            return Err(error);
+        }
+        Ok(self.report(rows))
     }
 }
 

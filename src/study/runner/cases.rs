@@ -1,9 +1,8 @@
-//! The cases of a study: what runs alone, and reuses nothing of other runs; whether all cases fit into the memory.
+//! The cases of a study: what runs alone, and reuses nothing of other runs.
 
 use super::{Progress, Study};
 use crate::error::Error;
 use crate::inequality::Outcome;
-use crate::study::memory::memory_of_process;
 use crate::study::{Row, Variant};
 
 impl<'a, const D: usize> Study<'a, D> {
@@ -23,7 +22,6 @@ impl<'a, const D: usize> Study<'a, D> {
                     adaptive: self.adaptive,
                     fit: self.fit.clone(),
                     solvers: vec![solver.clone()],
-                    linear_asked: self.linear_asked.clone(),
                     quadrature: self.quadrature,
                     ..Self::new(self.scene.clone())
                 }));
@@ -32,30 +30,14 @@ impl<'a, const D: usize> Study<'a, D> {
         cases
     }
 
-    /// Checks that all runs of a study fit into the memory. The reference solution and adaptive meshes do not count.
-    ///
-    /// # Errors
-    /// [`Error::NotEnoughMemory`].
-    pub(crate) fn check_memory(&self) -> Result<(), Error> {
-        let available = memory_of_process();
-        self.entries.iter().try_for_each(|entry| {
-            self.levels.iter().try_for_each(|&k| self.check_level(&*entry.scheme, k, available))
-        })
-    }
-
     /// The row of a case that is not run since a coarser level took too long, for this reason.
     ///
     /// # Panics
     /// If the study has no scheme or no level.
     pub(crate) fn row_not_run(&self, why: String) -> Row {
-        let (entry, level) = (&self.entries[0], self.first_level());
-        let row = Row {
-            cells: self.scene.domain.cells(level) as usize,
-            solver: self.solvers()[0].name().to_owned(),
-            message: Some(why),
-            ..Row::new(&self.scene.name, D, entry.scheme.name(), level, Outcome::TimeLimit)
-        };
-        self.named(entry, row, None)
+        let (level, solver) = (self.first_level(), &self.solvers()[0]);
+        let row = self.empty_row(&self.entries[0], (level, solver.name()), Outcome::TimeLimit);
+        Row { cells: self.scene.domain.cells(level) as usize, message: Some(why), ..row }
     }
 
     /// The variant of the rows of a case, with its level; of adaptive meshes that is zero.
@@ -72,11 +54,6 @@ impl<'a, const D: usize> Study<'a, D> {
     /// The rows of all schemes and levels against the reference of the study; none without one.
     pub(crate) fn rows_against_reference(&self) -> Result<Vec<Row>, Error> {
         self.reference.as_ref().map_or_else(|| Ok(Vec::new()), |_| Ok(self.run()?.rows))
-    }
-
-    /// The number of runs for these rows, that of the reference among them.
-    pub(crate) fn runs_against_reference(&self) -> usize {
-        self.reference.as_ref().map_or(0, |_| 1 + self.keys().len())
     }
 
     /// Tells the observer.

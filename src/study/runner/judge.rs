@@ -5,33 +5,24 @@ use super::rows::with_level;
 use crate::error::Error;
 use crate::instances::compiled;
 use crate::nested::NestedIteration;
-use crate::study::reference::Measured;
 use crate::study::row::{Iterations, Row};
 
 impl<const D: usize> Study<'_, D> {
     /// The row of the first scheme on the first level for values of its unknowns that another program
     /// found: their certificate, errors and totals. Solver and linear solver of the row are `none`.
     ///
-    /// # Errors
-    /// Those of [`Study::run`], and [`Error::Parameter`] for another number of values than of unknowns.
-    pub fn judge(&self, values: &[f64]) -> Result<Row, Error> {
-        self.judge_with(values, None)
-    }
-    /// As [`Study::judge`] for values to which constants of the problem are to be added, one for each unknown, or an empty
+    /// Where `constants` are given, those of the problem are to be added to the values, one for each unknown, or an empty
     /// list for zeros: see [`read_constants`](crate::exchange::read_constants).
     ///
     /// # Errors
-    /// Those of [`Study::judge`].
-    pub fn judge_beside(&self, values: &[f64], constants: &[f64]) -> Result<Row, Error> {
-        self.judge_with(values, Some(constants))
-    }
-    fn judge_with(&self, values: &[f64], constants: Option<&[f64]>) -> Result<Row, Error> {
+    /// Those of [`Study::run`], and [`Error::Parameter`] for another number of values than of unknowns.
+    pub fn judge(&self, values: &[f64], constants: Option<&[f64]>) -> Result<Row, Error> {
         compiled!(const D: fn(&Study<'_, D>, &[f64], Option<&[f64]>) -> Result<Row, Error>
                 = |study, values, constants| study.judge_values(values, constants)
         )(self, values, constants)
     }
     fn judge_values(&self, values: &[f64], constants: Option<&[f64]>) -> Result<Row, Error> {
-        let failure = self.where_exact_fails(1)?;
+        self.check_for(1)?;
         let (entry, level) = (&self.entries[0], self.first_level());
         let hierarchies = self.hierarchies(None)?;
         let on = |h| NestedIteration::new(&entry.problem, h).quadrature(self.quadrature);
@@ -39,9 +30,8 @@ impl<const D: usize> Study<'_, D> {
         let (position, nested) = with_level(&mut nested, level);
         let solved = nested.judge_beside(position, &*entry.scheme, (values, constants))?;
         let reference = self.find_reference(&hierarchies);
-        let measured = Measured { failure: failure.as_deref(), reference: reference.as_ref() };
-        let row = self.measured_row(entry, level, &solved, measured)?;
+        let row = self.row_of(entry, (level, "none"), &solved, reference.as_ref())?;
         let iterations = Iterations { outer: None, ..row.iterations };
-        Ok(Row { solver: "none".to_owned(), iterations, ..row })
+        Ok(Row { iterations, peak_memory_bytes: None, ..row })
     }
 }

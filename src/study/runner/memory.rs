@@ -4,21 +4,11 @@ use super::{Entry, Study};
 use crate::error::Error;
 use crate::inequality::Outcome;
 use crate::scheme::Scheme;
-use crate::study::memory::{bytes_about, peak_memory_bytes, unknowns_about};
+use crate::study::memory::{bytes_about, unknowns_about};
 use crate::study::row::Row;
 
 impl<const D: usize> Study<'_, D> {
-    /// Bytes that the process needs for the largest run of a scheme on a level, about: right to a factor of two without
-    /// factors of matrices, of three with them; the reference solution and adaptive meshes do not count. None for a study
-    /// without schemes or levels. No mesh is built.
-    pub fn memory_bytes(&self) -> Option<f64> {
-        let schemes = self.entries.iter().map(|entry| &*entry.scheme);
-        let of = |scheme| {
-            self.levels.iter().map(move |&k| self.bytes_of(scheme, self.scene.domain.cells(k)))
-        };
-        schemes.flat_map(of).max_by(f64::total_cmp)
-    }
-
+    /// Bytes that the process needs for a run on so many cells, about.
     fn bytes_of(&self, scheme: &dyn Scheme<D>, cells: f64) -> f64 {
         let layout = scheme.layout();
         let unknowns = unknowns_about(D, layout, cells) as usize;
@@ -64,16 +54,10 @@ impl<const D: usize> Study<'_, D> {
     pub(super) fn row_without_memory(
         &self,
         entry: &Entry<'_, D>,
-        (level, cells): (usize, f64),
-        solver: &str,
+        (level, solver, cells): (usize, &str, f64),
         error: Error,
     ) -> Result<Row, Error> {
-        let row = Row {
-            cells: cells as usize,
-            solver: solver.to_owned(),
-            peak_memory_bytes: peak_memory_bytes(),
-            ..Row::new(&self.scene.name, D, entry.scheme.name(), level, Outcome::OutOfMemory)
-        };
-        self.named(entry, row, None).with_error(error)
+        let row = self.empty_row(entry, (level, solver), Outcome::OutOfMemory);
+        Row { cells: cells as usize, ..row }.with_error(error)
     }
 }

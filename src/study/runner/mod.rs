@@ -3,6 +3,7 @@
 mod adaptive;
 #[cfg(feature = "report")]
 mod cases;
+mod files;
 mod judge;
 mod memory;
 mod on_parts;
@@ -25,17 +26,17 @@ use crate::problem::Problem;
 use crate::real::Precision;
 use crate::scenes::Scene;
 use crate::scheme::Scheme;
-use crate::study::compatibility::{check_entries, check_fit, check_names, check_scheme};
-#[cfg(feature = "report")]
-use crate::study::fields::FieldFiles;
+use crate::study::compatibility::{check_fit, check_names, check_scheme};
 #[cfg(feature = "report")]
 use crate::study::journal::Journal;
 use crate::study::memory::memory_of_process;
 use crate::study::orders::fill_orders;
 use crate::study::program::Program;
-use crate::study::reference::{Measured, Reference};
 use crate::study::report::Report;
 use crate::study::row::{Row, RowKey};
+#[cfg(feature = "report")]
+use files::FieldFiles;
+use reference::Reference;
 
 /// Progress of a study.
 #[derive(Debug)]
@@ -76,7 +77,6 @@ pub struct Study<'a, const D: usize> {
     not_exact: OnceCell<Option<String>>,
     reference: Option<Reference<'a, D>>,
     solvers: Vec<Arc<dyn InequalitySolver<f64> + 'a>>,
-    linear_asked: Option<String>,
     quadrature: DataQuadrature,
     repeat: usize,
     keeps_history: bool,
@@ -131,7 +131,6 @@ impl<'a, const D: usize> Study<'a, D> {
             not_exact: OnceCell::new(),
             reference: None,
             solvers: Vec::new(),
-            linear_asked: None,
             quadrature: DataQuadrature::default(),
             repeat: 1,
             keeps_history: false,
@@ -155,13 +154,12 @@ impl<'a, const D: usize> Study<'a, D> {
     /// [`Error::NothingToBound`], [`Error::UnsupportedForm`], [`Error::UnfitMesh`], [`Error::Mesh`].
     pub fn check(&self) -> Result<(), Error> {
         compiled!(const D: fn(&Study<'_, D>) -> Result<(), Error>
-                = |study| study.where_exact_fails(1).map(|_| ())
+                = |study| study.check_for(1)
         )(self)
     }
 
-    /// Checks schemes, levels and domain, for so many parts of the meshes. Returns the point at which the exact
-    /// solution of the scene breaks the contact condition of a mesh.
-    fn where_exact_fails(&self, parts: usize) -> Result<Option<String>, Error> {
+    /// Checks schemes, levels and domain, for so many parts of the meshes.
+    fn check_for(&self, parts: usize) -> Result<(), Error> {
         let levels = self.levels.len() + usize::from(self.adaptive.is_some());
         let lengths = [("schemes", self.entries.len()), ("levels", levels)];
         if let Some(&(parameter, _)) = lengths.iter().find(|(_, length)| *length == 0) {
@@ -176,25 +174,24 @@ impl<'a, const D: usize> Study<'a, D> {
         }
         let domain = &self.scene.domain;
         self.levels.iter().try_for_each(|&level| check_level(domain, level, parts))?;
-        let largest = self.levels.iter().copied().max().unwrap_or(self.first_level());
         for entry in &self.entries {
             check_scheme(&*entry.scheme, entry.problem.clone(), self.quadrature)?;
-            check_entries(&*entry.scheme, largest, domain.cells(largest) / parts as f64)?;
         }
         if let Some(adaptivity) = &self.adaptive {
             self.check_adaptive(adaptivity)?;
         } else if let Some(reference) = &self.reference {
             reference.check(domain, &self.levels)?;
             check_level(domain, reference.level, 1)?;
-            let cells = domain.cells(reference.level);
-            check_entries(&*reference.scheme, reference.level, cells)?;
             self.check_level(&*reference.scheme, reference.level, memory_of_process())?;
         }
-        // `check` and `run` need the fit, which assembles load and bounds on a mesh
-        if self.fit.get().is_none() {
-            let _ = self.fit.set(check_fit(&self.scene)?);
-        }
-        Ok(self.fit.get().cloned().flatten())
+        // the scene does not change: a second check finds the same
+        let _ = self.fit.set(check_fit(&self.scene)?);
+        Ok(())
+    }
+
+    /// The point at which the exact solution of the scene breaks the contact condition of a mesh, once that is checked.
+    fn where_exact_fails(&self) -> Option<&str> {
+        self.fit.get()?.as_deref()
     }
 
     /// Runs every scheme with every solver on every level.
@@ -210,19 +207,19 @@ impl<'a, const D: usize> Study<'a, D> {
         )(self)
     }
     fn run_all(&self) -> Result<Report, Error> {
-        let failure = self.where_exact_fails(1)?;
+        self.check_for(1)?;
         if let Some(adaptivity) = self.adaptive {
-            return self.run_adaptive(adaptivity, failure.as_deref());
+            return self.run_adaptive(adaptivity);
         }
-        let kept: Vec<(Option<Row>, bool)> = self.keys().iter().map(|key| self.kept(key)).collect();
+        let kept: Vec<Option<Row>> = self.keys().iter().map(|key| self.kept(key)).collect();
         (self.observer)(Progress::Entered(Phase::Mesh));
         let available = memory_of_process();
-        let hierarchies = match kept.iter().all(|of| of.1) {
+        let hierarchies = match kept.iter().all(Option::is_some) {
             true => Vec::new(),
             false => self.hierarchies(available)?,
         };
         let reference = self.find_reference(&hierarchies);
-        let measured = Measured { failure: failure.as_deref(), reference: reference.as_ref() };
+        let reference = reference.as_ref();
         let mut by_solver: Vec<Vec<NestedIteration<'_, D>>> = self
             .solvers()
             .iter()
@@ -232,33 +229,36 @@ impl<'a, const D: usize> Study<'a, D> {
             })
             .collect();
         let mut kept = kept.into_iter();
-        let (mut rows, mut unwritten) = (Vec::new(), None);
+        let mut rows = Vec::new();
+        #[cfg(feature = "report")]
+        let mut unwritten = None;
         for entry in &self.entries {
             for (nested, solver) in by_solver.iter_mut().zip(self.solvers()) {
                 for &level in &self.levels {
-                    let (kept, is_whole) = kept.next().expect("one entry for each row");
-                    if let Some(row) = kept.clone() {
+                    if let Some(row) = kept.next().expect("one entry for each row") {
                         (self.observer)(Progress::Kept(&row));
                         rows.push(row);
-                    }
-                    if is_whole {
                         continue;
                     }
                     (self.observer)(Progress::Started(&self.scene.name, &entry.label, level));
                     let place = (level, solver.name());
-                    let (row, solved) = self.row(nested, entry, place, measured, available)?;
-                    let row = match &kept {
-                        Some(row) => row,
-                        None => self.finish(row, &mut rows)?,
-                    };
+                    let (row, solved) = self.row(nested, entry, place, reference, available)?;
+                    #[cfg(feature = "report")]
                     if let Some(solved) = &solved {
-                        let levels = &self.levels;
-                        self.write_files(row, levels, solved, measured, &mut unwritten)?;
+                        self.write_files(&row, &self.levels, solved, reference, &mut unwritten);
+                    }
+                    let row = self.finish(row, &mut rows)?;
+                    if let Some(solved) = &solved {
+                        self.hand_over(row, solved)?;
                     }
                 }
             }
         }
-        unwritten.map_or_else(|| Ok(self.report(rows)), Err)
+        #[cfg(feature = "report")]
+        if let Some(error) = unwritten {
+            return Err(error);
+        }
+        Ok(self.report(rows))
     }
 
     /// The report of all rows.
@@ -295,16 +295,14 @@ impl<'a, const D: usize> Study<'a, D> {
         keys
     }
 
-    /// The row that the journal has from an earlier run, and whether its files are there.
+    /// The row that the journal has from an earlier run.
     #[cfg(feature = "report")]
-    fn kept(&self, key: &RowKey) -> (Option<Row>, bool) {
-        let row = self.journal.and_then(|journal| journal.take(key));
-        let is_whole = row.as_ref().is_some_and(|row| !self.lacks_files(row));
-        (row, is_whole)
+    fn kept(&self, key: &RowKey) -> Option<Row> {
+        self.journal.and_then(|journal| journal.take(key))
     }
     #[cfg(not(feature = "report"))]
-    fn kept(&self, _: &RowKey) -> (Option<Row>, bool) {
-        (None, false)
+    fn kept(&self, _: &RowKey) -> Option<Row> {
+        None
     }
 
     /// The meshes of all levels on which some scheme fits into the available bytes; the meshes of a reference are in

@@ -15,7 +15,6 @@ use crate::real::Precision;
 use crate::study::file_name::file_name;
 use crate::study::memory::peak_memory_bytes;
 use crate::study::part_figures::{PartFigures, PartSeconds};
-use crate::study::reference::Measured;
 use crate::study::report::Report;
 use crate::study::row::{Row, Seconds};
 
@@ -26,7 +25,7 @@ impl<const D: usize> Study<'_, D> {
     /// Those of [`Study::check`].
     pub fn check_on_parts(&self, process: &Process) -> Result<(), Error> {
         self.check_parts()?;
-        self.where_exact_fails(process.count()).map(|_| ())
+        self.check_for(process.count())
     }
 
     /// Runs every scheme on every level over the parts of a mesh, of which this process has one. All processes
@@ -37,8 +36,7 @@ impl<const D: usize> Study<'_, D> {
     /// references, adaptive meshes, files of fields and inequalities, a journal of an earlier run. A run that
     /// fails is no error: its row has the outcome and the message.
     pub fn run_on_parts(&self, process: &Process) -> Result<Report, Error> {
-        let failure = self.where_exact_fails(process.count())?;
-        self.check_parts()?;
+        self.check_on_parts(process)?;
         let hierarchies = self.hierarchies_on_parts(process)?;
         let solver = Rc::new(SolverOnParts::new(process.clone()));
         let on_parts = |hierarchy| {
@@ -58,7 +56,7 @@ impl<const D: usize> Study<'_, D> {
                 let mut row = match &solved {
                     Err(error) => failed(error),
                     Ok(solved) => self
-                        .row_on_parts(entry, level, solved, failure.as_deref(), process)
+                        .row_on_parts(entry, level, solved, process)
                         .unwrap_or_else(|error| failed(&error)),
                 };
                 row.solver = nested.solver_name().to_owned();
@@ -100,13 +98,12 @@ impl<const D: usize> Study<'_, D> {
             engine: process.engine.name(),
             ..PartFigures::default()
         };
-        let row = Row {
+        Row {
             ranks: Some(ranks),
             message: Some(error.to_string()),
             mesh_size: mesh.mesh_size(),
-            ..Row::new(&self.scene.name, D, entry.scheme.name(), level, outcome)
-        };
-        self.named(entry, row, None)
+            ..self.empty_row(entry, (level, ""), outcome)
+        }
     }
 
     /// Refuses what parts of a mesh do not have.
@@ -138,13 +135,10 @@ impl<const D: usize> Study<'_, D> {
         entry: &Entry<'_, D>,
         level: usize,
         solved: &Solved<'_, D>,
-        failure: Option<&str>,
         process: &Process,
     ) -> Result<Row, Error> {
         let (parts, peak_memory_bytes) = part_figures(solved, process)?;
-        let row = Row::of(&self.scene.name, entry.scheme.name(), level, solved);
-        let mut row = self.named(entry, row, failure);
-        Measured { failure, reference: None }.measure(&mut row, solved)?;
+        let mut row = self.row_of(entry, (level, ""), solved, None)?;
         let PartSeconds { mesh, assemble, number, start, solve } = parts.seconds;
         let in_bound = process.exchange.largest(&[row.seconds.bound.unwrap_or(0.0)])?[0];
         row.seconds = Seconds {

@@ -1,20 +1,17 @@
-//! The rows of a study: one scheme on one level each.
+//! The rows of a study, one scheme on one level each: all fields are filled in here.
 
+use super::reference::FoundReference;
 use super::{Entry, Progress, Study};
 use crate::error::Error;
-#[cfg(feature = "report")]
-use crate::exchange::{write_constants, write_inequality};
-use crate::inequality::Outcome;
+use crate::inequality::{HistoryPoint, Outcome, explanation};
+use crate::measure::FoundValue;
 use crate::mesh::Mesh;
-use crate::nested::{NestedIteration, Phase, Solved};
+use crate::nested::{NestedIteration, Phase, Solved, warnings_of_forces};
 use crate::scenes::check::Violation;
 use crate::scenes::check_exact_on;
 use crate::scheme::ExpectedOrders;
-#[cfg(feature = "report")]
-use crate::study::file_name::file_name;
 use crate::study::memory::peak_memory_bytes;
-use crate::study::reference::Measured;
-use crate::study::row::Row;
+use crate::study::row::{Iterations, Row, Seconds};
 use crate::study::setting::setting;
 
 /// The hierarchy that has a level, with the place of its mesh.
@@ -45,21 +42,57 @@ impl<const D: usize> Study<'_, D> {
         nested: &mut [NestedIteration<'p, D>],
         entry: &'p Entry<'_, D>,
         (level, solver): (usize, &str),
-        measured: Measured<'_, 'p, D>,
+        reference: Option<&FoundReference<'p, D>>,
         available: Option<u64>,
     ) -> Result<(Row, Option<Solved<'p, D>>), Error> {
         if let Err(error) = self.check_level(&*entry.scheme, level, available) {
-            let cells = self.scene.domain.cells(level);
-            return Ok((self.row_without_memory(entry, (level, cells), solver, error)?, None));
+            let place = (level, solver, self.scene.domain.cells(level));
+            return Ok((self.row_without_memory(entry, place, error)?, None));
         }
         let (position, nested) = with_level(nested, level);
         nested.replace_constraint_set(&entry.problem);
         match nested.solve_on(position, &*entry.scheme) {
-            Ok(solved) => Ok((self.row_of(entry, level, &solved, solver, measured)?, Some(solved))),
-            Err(error) => {
-                let place = (level, nested.mesh(position));
-                Ok((self.row_without(entry, place, solver, measured.failure, error)?, None))
+            Ok(solved) => {
+                let row = self.row_of(entry, (level, solver), &solved, reference)?;
+                Ok((row, Some(solved)))
             }
+            Err(error) => {
+                let place = (level, solver, nested.mesh(position));
+                Ok((self.row_without(entry, place, error)?, None))
+            }
+        }
+    }
+
+    /// A row with its names, the kind of meshes and the promised orders, and nothing found.
+    pub(super) fn empty_row(
+        &self,
+        entry: &Entry<'_, D>,
+        (level, solver): (usize, &str),
+        outcome: Outcome,
+    ) -> Row {
+        let (scheme, set) = (&*entry.scheme, entry.problem.constraint_set());
+        let kind = match self.scene.domain.is_mesh() {
+            _ if self.adaptive.is_some() => "steps",
+            true => "refinements",
+            false => "subdivisions",
+        };
+        let expected_order = match (self.where_exact_fails(), &self.scene.problem.exact) {
+            (None, Some(_)) => scheme.expected_orders_on(set, &setting(&self.scene)),
+            // theory promises nothing without an exact solution that holds on the mesh
+            _ => ExpectedOrders::default(),
+        };
+        Row {
+            constants: self.scene.problem.constants.clone(),
+            constraint: scheme.constraint_on(set).unwrap_or_else(|| set.name().to_owned()),
+            label: entry.label.clone(),
+            level_kind: Some(kind.to_owned()),
+            theta: self.adaptive.map(|of| of.theta),
+            solver: solver.to_owned(),
+            expected_order,
+            // all rows of a request have the same keys
+            history: self.keeps_history.then(Vec::new),
+            peak_memory_bytes: peak_memory_bytes(),
+            ..Row::new(&self.scene.name, D, scheme.name(), level, outcome)
         }
     }
 
@@ -70,108 +103,123 @@ impl<const D: usize> Study<'_, D> {
     pub(super) fn row_without(
         &self,
         entry: &Entry<'_, D>,
-        (level, mesh): (usize, &Mesh<D>),
-        solver: &str,
-        failure: Option<&str>,
+        (level, solver, mesh): (usize, &str, &Mesh<D>),
         error: Error,
     ) -> Result<Row, Error> {
-        let scheme = &*entry.scheme;
-        let space = scheme.discretise(&entry.problem, mesh, self.quadrature);
+        let space = entry.scheme.discretise(&entry.problem, mesh, self.quadrature);
         let without_solution = Row {
-            parameters: scheme.parameters(mesh),
+            parameters: entry.scheme.parameters(mesh),
             unknowns: space.ok().map(|space| space.unknowns()),
             cells: mesh.n_cells(),
             mesh_size: mesh.mesh_size(),
-            solver: solver.to_owned(),
-            peak_memory_bytes: peak_memory_bytes(),
-            ..Row::new(&self.scene.name, D, scheme.name(), level, Outcome::Malformed)
+            ..self.empty_row(entry, (level, solver), Outcome::Malformed)
         };
-        self.named(entry, without_solution, failure).with_error(error)
+        without_solution.with_error(error)
     }
 
     /// The row of a solution.
     pub(super) fn row_of<'p>(
         &self,
         entry: &Entry<'_, D>,
-        level: usize,
+        place: (usize, &str),
         solved: &Solved<'p, D>,
-        solver: &str,
-        measured: Measured<'_, 'p, D>,
+        reference: Option<&FoundReference<'p, D>>,
     ) -> Result<Row, Error> {
         (self.observer)(Progress::Entered(Phase::Measures));
-        let row = self.measured_row(entry, level, solved, measured)?;
-        let (solver, peak_memory_bytes) = (solver.to_owned(), peak_memory_bytes());
-        Ok(Row { solver, peak_memory_bytes, ..row })
-    }
-
-    /// The name of a row in its files, after the scene: the label, with the solver where there are several.
-    fn name_of_files(&self, row: &Row) -> String {
-        match self.solvers.len() {
-            0 | 1 => row.label.clone(),
-            _ => format!("{}-{}", row.label, row.solver),
+        let (solution, forces) = (solved.solution(), solved.multiplier());
+        let [cells, unknowns, nonzeros] = solved.sizes().map(|n| n as usize);
+        let mut warnings = solved.warnings().to_vec();
+        warnings.extend(warnings_of_forces(solved, forces.as_deref()));
+        let point = |at: &HistoryPoint| {
+            (at.systems, at.seconds, Some(at.certificate).filter(|largest| largest.is_finite()))
+        };
+        let history = Some(&solution.history).filter(|history| !history.is_empty());
+        let solve_seconds = solved.solve_seconds + solved.start_seconds;
+        let row = self.empty_row(entry, place, solved.outcome());
+        let mut row = Row {
+            message: explanation(solved.inequality(), solved.outcome()).or(row.message),
+            parameters: solved.discretisation().form().theory().parameters,
+            linear: solution.linear_solver.to_owned(),
+            cells,
+            unknowns: Some(unknowns),
+            nonzeros: Some(nonzeros),
+            mesh_size: solved.mesh().mesh_size(),
+            objective: solved.objective(),
+            active: solved.active(),
+            contact_measure: solved.contact_measure(),
+            resultant: forces.map(|forces| solved.resultant_of(&forces)),
+            resultants: solved.resultants(),
+            iterations: Iterations {
+                outer: solved.outer(),
+                linear: solution.linear,
+                levels: solved.coarser_levels,
+                systems: solved.outer().and(solution.systems),
+                start_cycles: solved.start_cycles,
+                stages: solution.stages.clone(),
+            },
+            certificate: solved.certificate(),
+            rounding: solved.rounding(),
+            seconds: Seconds {
+                start: Some(solved.start_seconds),
+                ..Seconds::new(solved.mesh_seconds, solved.system().assemble_seconds, solve_seconds)
+            },
+            history: history.map(|of| of.iter().map(point).collect()).or(row.history),
+            warnings,
+            ..row
+        };
+        if let Err(error) = self.measure(&mut row, solved, reference) {
+            row = row.with_error(error)?;
         }
+        row.peak_memory_bytes = peak_memory_bytes();
+        Ok(row)
     }
 
-    /// Whether the fields of a row of an earlier run are wanted and not there: the run ended before they were written.
-    #[cfg(feature = "report")]
-    pub(super) fn lacks_files(&self, row: &Row) -> bool {
-        let name = self.name_of_files(row);
-        let lacks = self.fields.lack((&row.scene, &name), row.level, &self.levels);
-        lacks && row.status.has_iterate()
-    }
-
-    /// Writes the files of a solution whose row is finished; `levels` are those that have files. The first file that
-    /// cannot be written goes to `unwritten`: it is no reason for the other rows not to run.
-    ///
-    /// # Errors
-    /// Those of the function for each solution.
-    #[cfg_attr(not(feature = "report"), expect(unused_variables))]
-    pub(super) fn write_files<'p>(
+    /// Fills in energy, penetration, errors, bound and values, and why there are none.
+    fn measure<'p>(
         &self,
-        row: &Row,
-        levels: &[usize],
+        row: &mut Row,
         solved: &Solved<'p, D>,
-        measured: Measured<'_, 'p, D>,
-        unwritten: &mut Option<Error>,
+        reference: Option<&FoundReference<'p, D>>,
     ) -> Result<(), Error> {
-        let Row { scene, label, level, .. } = row;
-        let name = self.name_of_files(row);
-        #[cfg(feature = "report")]
-        {
-            let reference = measured.reference.and_then(|found| found.as_ref().ok());
-            let reference = reference.map(|found| &found.solved);
-            let fields = self.fields.write((scene, &name), *level, levels, solved, reference);
-            let dumped = self.inequalities.as_ref().map_or(Ok(()), |directory| {
-                let folder = directory.join(file_name(&format!("{scene}-{label}-{level}")));
-                write_inequality(&folder, solved.inequality(), solved.mesh())?;
-                write_constants(folder, &solved.solution().constants)
-            });
-            *unwritten = unwritten.take().or(fields.err()).or(dumped.err());
-        }
-        match self.each_solution.as_ref().filter(|_| solved.has_iterate()) {
-            Some(f) => f(&name, *level, solved),
-            None => Ok(()),
-        }
-    }
-
-    /// The row of a solution with its errors and totals, without solver and memory.
-    pub(super) fn measured_row<'p>(
-        &self,
-        entry: &Entry<'_, D>,
-        level: usize,
-        solved: &Solved<'p, D>,
-        measured: Measured<'_, 'p, D>,
-    ) -> Result<Row, Error> {
-        let row = Row::of(&self.scene.name, entry.scheme.name(), level, solved);
-        let mut row = self.named(entry, row, measured.failure);
-        match measured.measure(&mut row, solved) {
-            Ok(()) => {
-                let is_measured = row.against.as_deref() == Some("exact");
-                row.warnings.extend(self.why_not_exact(solved).filter(|_| is_measured));
-                Ok(row)
+        row.energy = solved.energy()?;
+        let penetration = solved.penetration()?;
+        row.penetration = penetration.map(|found| found.largest()).filter(|most| most.is_finite());
+        row.warnings.extend(penetration.and_then(|found| found.remark()));
+        let problem = solved.discretisation().problem();
+        let kinds: Vec<_> = problem.values.iter().map(|(_, of)| of.clone()).collect();
+        let mut known = Vec::new();
+        match (reference, self.where_exact_fails()) {
+            (Some(Ok(reference)), _) => {
+                row.error = solved.difference(&reference.solved)?;
+                row.contact = solved.contact_difference(&reference.solved)?;
+                row.against = Some(reference.name.clone());
+                known.clone_from(&reference.values);
             }
-            Err(error) => row.with_error(error),
+            (Some(Err(why)), _) => row.warnings.push(format!("{why}: no errors")),
+            (None, Some(at)) => row.warnings.push(format!(
+                "the exact solution breaks the contact condition of this mesh at {at}: no errors"
+            )),
+            (None, None) if problem.exact.is_some() => {
+                (row.error, row.bound) = solved.errors_and_bound_figures()?;
+                row.contact = solved.contact_errors()?;
+                row.against = Some("exact".to_owned());
+                known = solved.discretisation().exact_values_of(&kinds)?;
+            }
+            (None, None) => {}
         }
+        let is_exact = row.against.as_deref() == Some("exact");
+        if !is_exact {
+            let with_v = self.where_exact_fails().is_none() && reference.is_some();
+            row.bound = solved.bound_figures(row.error.broken_energy, with_v);
+        }
+        if !kinds.is_empty() {
+            set_values(row, &problem.values, &solved.values_of(&kinds)?, &known);
+        }
+        row.seconds.bound = solved.bound_seconds();
+        let remark = row.bound.remark(row.against.as_deref());
+        row.warnings.extend(remark.filter(|_| row.converged()));
+        row.warnings.extend(self.why_not_exact(solved).filter(|_| is_exact));
+        Ok(())
     }
 
     /// Why the solution that is stated for a problem with data by name does not solve it, if that is found on the mesh
@@ -191,31 +239,23 @@ impl<const D: usize> Study<'_, D> {
         };
         self.not_exact.get_or_init(found).clone()
     }
+}
 
-    /// The row with the names of constraint set and label, the kind of meshes, and the promised orders.
-    pub(super) fn named(&self, entry: &Entry<'_, D>, row: Row, failure: Option<&str>) -> Row {
-        let (scheme, set) = (&*entry.scheme, entry.problem.constraint_set());
-        let kind = match self.scene.domain.is_mesh() {
-            _ if self.adaptive.is_some() => "steps",
-            true => "refinements",
-            false => "subdivisions",
-        };
-        let expected_order = match (failure, &self.scene.problem.exact) {
-            (None, Some(_)) => scheme.expected_orders_on(set, &setting(&self.scene)),
-            // theory promises nothing without an exact solution that holds on the mesh
-            _ => ExpectedOrders::default(),
-        };
-        Row {
-            constants: self.scene.problem.constants.clone(),
-            level_kind: Some(kind.to_owned()),
-            theta: self.adaptive.map(|of| of.theta),
-            linear_asked: self.linear_asked.clone(),
-            // all rows of a request have the same keys
-            history: row.history.or_else(|| self.keeps_history.then(Vec::new)),
-            constraint: scheme.constraint_on(set).unwrap_or_else(|| set.name().to_owned()),
-            label: entry.label.clone(),
-            expected_order,
-            ..row
+/// Fills in the values by name, with their errors where those of the solution are known.
+fn set_values<const D: usize, W>(
+    row: &mut Row,
+    wanted: &[(String, W)],
+    found: &[FoundValue<D>],
+    known: &[Option<f64>],
+) {
+    for (k, ((name, _), found)) in wanted.iter().zip(found).enumerate() {
+        row.values.insert(name.clone(), found.value);
+        if let Some(place) = found.place {
+            row.values_at.insert(name.clone(), place.as_slice().to_vec());
+        }
+        if let Some(known) = known.get(k) {
+            let error = found.value.zip(*known).map(|(a, b)| (a - b).abs());
+            row.error.values.insert(name.clone(), error);
         }
     }
 }

@@ -4,6 +4,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use super::reference::Reference;
 use super::{Entry, Progress, Study};
 use crate::assemble::DataQuadrature;
 use crate::constraint::ConstraintSet;
@@ -14,7 +15,6 @@ use crate::problem::Problem;
 use crate::scheme::{NamedScheme, Scheme};
 #[cfg(feature = "report")]
 use crate::study::journal::Journal;
-use crate::study::reference::Reference;
 
 impl<'a, const D: usize> Study<'a, D> {
     /// Measures all rows against the solution of this scheme on a level, in place of the exact one: errors,
@@ -110,13 +110,6 @@ impl<'a, const D: usize> Study<'a, D> {
     #[must_use]
     pub fn boxed_solver(mut self, solver: Box<dyn InequalitySolver<f64> + 'a>) -> Self {
         self.solvers.push(solver.into());
-        self
-    }
-    /// Says in all rows by which name their linear solver was asked for, so that rows of studies that ask for others can
-    /// stand beside them.
-    #[must_use]
-    pub fn linear_asked(mut self, name: &str) -> Self {
-        self.linear_asked = Some(name.to_owned());
         self
     }
     /// Sets whether schemes start without contact and without coarser levels.

@@ -1,7 +1,8 @@
 //! Reports as tables: a summary at the finest level of every series, and all levels.
 
+mod columns;
 pub(crate) mod levels;
-pub(crate) mod remarks;
+mod remarks;
 pub(crate) mod summary;
 pub(crate) mod values;
 

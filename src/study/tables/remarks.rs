@@ -1,63 +1,66 @@
-//! The remarks below the tables of a report: why rows did not converge, and warnings.
+//! The remarks below the tables of a report: why rows did not converge, warnings, and what marks mean.
 
+use super::columns::above_norm;
 use crate::study::row::{Row, distinct};
+use crate::study::series::Series;
 
-/// The reason for which a row did not converge, in one sentence.
-fn reason(row: &Row) -> &str {
-    row.message.as_deref().unwrap_or(row.status.message())
+/// The remarks on rows: why some did not converge, warnings, and the marks of bounds.
+pub(super) fn remarks(series: &[Series<'_>], warned: &[Series<'_>]) -> Vec<String> {
+    let reason = |row: &Row| match row.converged() {
+        true => Vec::new(),
+        false => {
+            let reason = row.message.as_deref().unwrap_or(row.status.message());
+            vec![format!("{}: {reason}", row.status)]
+        }
+    };
+    let rows: Vec<&Row> = warned.iter().flat_map(|of| of.rows.iter().copied()).collect();
+    let failures = each_once(series, reason);
+    let warnings = each_once(warned, |row| row.warnings.clone());
+    let marks = above_norm(&rows).into_iter().chain(unproven(&rows));
+    failures.into_iter().chain(warnings).chain(marks).collect()
 }
 
-/// The reasons that a table has given.
-#[derive(Default)]
-pub(super) struct ReasonsGiven(Vec<String>);
-
-impl ReasonsGiven {
-    /// The status of a row; of one that did not converge with the reason, which is kept.
-    pub fn status(&mut self, row: &Row) -> String {
-        let message = self.message(row);
-        if !row.converged() {
-            self.0.push(reason(row).to_owned());
-        }
-        message
-    }
-    /// The status, with the reason unless it was given before.
-    pub fn message(&self, row: &Row) -> String {
-        match row.converged() {
-            true => row.status.to_string(),
-            false if self.0.iter().any(|given| given == reason(row)) => {
-                format!("{}, as above", row.status)
+/// Each text of rows once, after the names of its series, with their levels where these are not all.
+fn each_once(series: &[Series<'_>], texts: impl Fn(&Row) -> Vec<String>) -> Vec<String> {
+    let has = |row: &Row, text: &String| texts(row).contains(text);
+    let all = series.iter().flat_map(|of| of.rows.iter().flat_map(|row| texts(row)));
+    let remark = |text: String| {
+        let mut places: Vec<(String, Vec<&str>)> = Vec::new();
+        for of in series {
+            let levels = of.rows.iter().filter(|row| has(row, &text));
+            let levels: Vec<String> = levels.map(|row| row.level.to_string()).collect();
+            let place = match (levels.len(), of.rows.len()) {
+                (0, _) => continue,
+                (_, 1) => String::new(),
+                _ => format!(" at {}", levels.join(", ")),
+            };
+            // series with the same levels have them once
+            match places.iter_mut().find(|(other, _)| *other == place) {
+                Some((_, names)) => names.push(&of.name),
+                None => places.push((place, vec![&of.name])),
             }
-            false => format!("{}: {}", row.status, reason(row)),
         }
-    }
+        let place = |(place, names): (String, Vec<&str>)| names.join(", ") + &place;
+        let places: Vec<String> = places.into_iter().map(place).collect();
+        format!("{}: {text}", places.join("; "))
+    };
+    distinct(all).into_iter().map(remark).collect()
 }
 
-/// Each warning of the rows once, after the labels of its rows, with their levels where a label has several.
-pub(super) fn warnings<'r>(rows: &[&'r Row]) -> Vec<(String, &'r str)> {
-    let levels_of = |label: &str, has: &dyn Fn(&Row) -> bool| {
-        distinct(rows.iter().filter(|r| r.label == label && has(r)).map(|r| r.level))
+/// The remark that explains the marks of bounds: the terms that are not proven, with their schemes where these differ in
+/// them. None without marks.
+fn unproven(rows: &[&Row]) -> Option<String> {
+    let words = |row: &&Row| row.bound.unproven_words();
+    let sets = distinct(rows.iter().map(words).filter(|words| !words.is_empty()));
+    let of_schemes = |set: &String| {
+        let rows = rows.iter().filter(|row| words(row) == *set);
+        let labels = distinct(rows.map(|row| row.label.as_str()));
+        format!("{set} ({})", labels.join(", "))
     };
-    let labels = |warning: &str| {
-        let has = |row: &Row| row.warnings.iter().any(|of| of == warning);
-        let labels = distinct(rows.iter().filter(|r| has(r)).map(|r| r.label.as_str()));
-        let of_label = |label: &str| match levels_of(label, &|_| true).len() {
-            1 => String::new(),
-            _ => {
-                let levels = levels_of(label, &has);
-                format!(
-                    " at {}",
-                    levels.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")
-                )
-            }
-        };
-        // labels with the same levels have them once
-        let all = distinct(labels.iter().map(|label| of_label(label)));
-        let with = |levels: &String| {
-            let meant = labels.iter().copied().filter(|label| of_label(label) == *levels);
-            meant.collect::<Vec<_>>().join(", ") + levels
-        };
-        all.iter().map(with).collect::<Vec<_>>().join("; ")
+    let all = match &sets[..] {
+        [] => return None,
+        [set] => set.clone(),
+        several => several.iter().map(of_schemes).collect::<Vec<_>>().join("; "),
     };
-    let once = distinct(rows.iter().flat_map(|r| r.warnings.iter().map(String::as_str)));
-    once.into_iter().map(|warning| (labels(warning), warning)).collect()
+    Some(format!("* bound with terms that are not proven: {all}"))
 }

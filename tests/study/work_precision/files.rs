@@ -6,8 +6,6 @@ use super::synthetic::synthetic;
 use crate::support::scratch::Scratch;
 use unilateral::inequality::Outcome;
 use unilateral::output::LATEX_PACKAGES;
-use unilateral::stability::{Effort, Stability};
-use unilateral::work_precision::WorkPrecision;
 
 /// Cells of a line without quoted commas.
 fn table(csv: &str) -> Vec<Vec<&str>> {
@@ -36,11 +34,10 @@ fn csv_reads_back_to_the_same_numbers() {
         assert!(numbers > 30, "{numbers}");
     }
     let scratch = Scratch::new("reach");
-    let work = WorkPrecision::of(&report);
-    work.write(scratch.0.join("made")).unwrap();
+    report.write(scratch.0.join("made")).unwrap();
     let reach = scratch.read("made/reach.csv");
-    assert_eq!(table(&reach).len(), 1 + work.reach().len());
-    assert!(reach.starts_with("scene,label,solver,linear_asked,meshes,norm,error,standing,"));
+    assert_eq!(table(&reach).len(), 1 + report.work_at_errors().len());
+    assert!(reach.starts_with("scene,label,solver,meshes,norm,error,standing,"));
 }
 
 /// Rows of each table in Markdown: bars in each.
@@ -52,7 +49,7 @@ fn bars(markdown: &str) -> Vec<Vec<usize>> {
 
 #[test]
 fn markdown_tables_have_as_many_cells_in_each_line() {
-    let text = WorkPrecision::of(&synthetic()).to_markdown();
+    let text = synthetic().to_markdown();
     let tables = bars(&text);
     assert_eq!(tables.len(), 5, "{text}");
     for lines in &tables {
@@ -66,10 +63,9 @@ fn markdown_tables_have_as_many_cells_in_each_line() {
 fn latex_tables_have_as_many_cells_as_columns_and_nothing_unescaped() {
     let mut report = synthetic();
     report.rows[0].warnings.push("odd_reason & 100%".into());
-    let work = WorkPrecision::of(&report);
-    let text = work.to_latex();
+    let text = report.to_latex();
     let tables: Vec<&str> = text.split("\\begin{tabular}{").skip(1).collect();
-    assert_eq!(tables.len(), work.summary_tables().len());
+    assert_eq!(tables.len(), report.work_tables().len());
     for table in tables {
         let (columns, rest) = table.split_once("}\n\\toprule\n").unwrap();
         let body = rest.split("\\end{tabular}").next().unwrap();
@@ -82,7 +78,7 @@ fn latex_tables_have_as_many_cells_as_columns_and_nothing_unescaped() {
         assert_eq!(body.matches("\\bottomrule").count(), 1);
     }
     assert!(!text.contains("phases") && text.contains("\\num{2.83e-3}"), "{text}");
-    let all: String = work.detail_tables().iter().map(|table| table.to_latex()).collect();
+    let all: String = report.tables().iter().map(|table| table.to_latex()).collect();
     assert!(all.contains("odd\\_reason \\& 100\\%") && all.contains("\\num{1.02e-3}"), "{all}");
 }
 
@@ -91,14 +87,12 @@ fn latex_tables_have_as_many_cells_as_columns_and_nothing_unescaped() {
 fn needs_pdflatex_to_compile_latex() {
     let mut report = synthetic();
     report.rows[5].status = Outcome::OutOfMemory;
-    let stability = Stability::new(Effort::Trial).run().unwrap();
     let mut rows = crate::rows::rows();
     rows[3].label += ":facet-means@factor=10,weight=anisotropic";
     rows[5].status = Outcome::Stalled;
     let scratch = Scratch::new("latex");
     crate::rows::report(rows).write(&scratch.0).unwrap();
-    let texts =
-        [WorkPrecision::of(&report).to_latex(), stability.to_latex(), scratch.read("report.tex")];
+    let texts = [report.to_latex(), scratch.read("report.tex")];
     let document = format!(
         "\\documentclass{{article}}\n{LATEX_PACKAGES}\n\\begin{{document}}\n{}\\end{{document}}\n",
         texts.join("\\clearpage\n")
@@ -117,25 +111,17 @@ fn failures_are_listed_and_drawn() {
     let mut report = synthetic();
     report.rows[2].status = Outcome::Cycling;
     report.complete = false;
-    let text = WorkPrecision::of(&report).to_text(100);
-    assert!(text.contains("did not converge: cycling"), "{text}");
+    let text = report.details_to_text(100);
+    assert!(text.contains("p1 at 32: cycling: "), "{text}");
     let scratch = Scratch::new("drawn");
-    let written = WorkPrecision::of(&report).write(&scratch.0).unwrap();
-    assert_eq!(written.len(), 5);
-    // a page and figures come with the last round
-    assert!(!scratch.0.join("report.html").exists());
-    report.complete = true;
-    let written = WorkPrecision::of(&report).write(&scratch.0).unwrap();
-    assert_eq!(written.len(), 6 + 2);
+    let written = report.write(&scratch.0).unwrap();
+    assert_eq!(written.len(), 8 + 2);
     for plot in ["time", "unknowns"] {
         let text = scratch.read(&format!("radial-2d-{plot}.svg"));
         assert!(text.contains("did not converge"), "{plot}");
     }
     let page = scratch.read("report.html");
-    assert!(
-        page.matches("<svg").count() == 2 + 2 && page.contains("time to reach an error"),
-        "{page}"
-    );
+    assert!(page.matches("<svg").count() == 2 && page.contains("time to reach an error"), "{page}");
     // nothing is left of what was on its way
     let hidden = std::fs::read_dir(&scratch.0).unwrap();
     let is_hidden = |e: std::fs::DirEntry| e.file_name().to_string_lossy().starts_with('.');
@@ -147,7 +133,7 @@ fn figures_are_as_wide_as_their_longest_label() {
     let width = |label: &str| {
         let mut report = synthetic();
         report.rows.iter_mut().for_each(|row| row.label = format!("{}{label}", row.scheme));
-        let figures = WorkPrecision::of(&report).figures();
+        let figures = report.work_figures();
         let of_time = figures.iter().find(|(name, _)| name == "radial-2d-time").unwrap();
         let text = of_time.1.to_svg();
         for scheme in ["p1", "sipg", "wopsip"] {

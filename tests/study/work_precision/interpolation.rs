@@ -5,7 +5,7 @@ use crate::work_precision::synthetic::measured;
 use unilateral::inequality::Outcome;
 use unilateral::measure::{ErrorNorm, Errors};
 use unilateral::study::Row;
-use unilateral::work_precision::{Standing, WorkPrecision};
+use unilateral::work_precision::Standing;
 
 /// The rows of a scheme with these errors in L2 and seconds, from coarse to fine; none is a run that failed.
 fn levels(scheme: &str, points: &[Option<(f64, f64)>]) -> Vec<Row> {
@@ -26,7 +26,7 @@ fn levels(scheme: &str, points: &[Option<(f64, f64)>]) -> Vec<Row> {
 
 /// The errors that a scheme reaches, of those at which schemes are compared, and the seconds that it takes.
 fn reached(scheme: &str, rows: Vec<Row>) -> Vec<(f64, f64)> {
-    let reach = WorkPrecision::of(&report(rows)).reach();
+    let reach = report(rows).work_at_errors();
     assert!(reach.iter().all(|at| at.norm == ErrorNorm::L2));
     let of_scheme = reach.into_iter().filter(|at| at.variant.label == scheme);
     of_scheme.filter_map(|at| Some((at.error, at.seconds?))).collect()
@@ -91,7 +91,7 @@ fn a_level_that_failed_is_not_bridged_and_a_plateau_is_not_crossed_backwards() {
     for scheme in ["cr", "wopsip"] {
         rows.extend(levels(scheme, &[Some((1.0, 1.0)), Some((1e-4, 4.0))]));
     }
-    for at in WorkPrecision::of(&report(rows)).reach() {
+    for at in report(rows).work_at_errors() {
         let expected = match (&at.variant.label[..], at.error) {
             ("cr" | "wopsip", _) => Standing::Reached,
             ("p1", error) if error >= 1e-1 => continue,

@@ -7,14 +7,12 @@ pub mod synthetic;
 use std::cell::{Cell, RefCell};
 
 use crate::support::scratch::Scratch;
-use serde_json::Value;
 use synthetic::{measured, synthetic};
 use unilateral::inequality::Outcome;
-use unilateral::linear::LinearMethod;
 use unilateral::measure::{ErrorNorm, Errors};
 use unilateral::prelude::*;
-use unilateral::study::{Progress, Row, Seconds, Variant};
-use unilateral::work_precision::{Rounds, Standing, WorkAtError, WorkPrecision};
+use unilateral::study::{Journal, Program, Progress, Row, Seconds, Variant};
+use unilateral::work_precision::{Rounds, Standing, WorkAtError};
 
 fn close(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-12 * b.abs()
@@ -23,7 +21,7 @@ fn close(a: f64, b: f64) -> bool {
 #[test]
 fn times_to_reach_an_error_come_with_the_ratio_to_the_best() {
     let report = synthetic();
-    let reach = WorkPrecision::of(&report).reach();
+    let reach = report.work_at_errors();
     let l2: Vec<_> = reach.iter().filter(|r| r.norm == ErrorNorm::L2).collect();
     // errors from 1/64 to 1/1024, and the same three variants at each
     let at = |error: f64| l2.iter().filter(|r| r.error == error).collect::<Vec<_>>();
@@ -44,7 +42,7 @@ fn times_to_reach_an_error_come_with_the_ratio_to_the_best() {
 
 /// Where an error in L2 stands for a scheme, and the seconds of the level that bounds the time.
 fn standing(report: &Report, scene: &str, label: &str, error: f64) -> (Standing, Option<f64>) {
-    let at = WorkPrecision::of(report).reach().into_iter().find(|r| {
+    let at = report.work_at_errors().into_iter().find(|r| {
         (&r.variant.scene[..], &r.variant.label[..], r.norm, r.error)
             == (scene, label, ErrorNorm::L2, error)
     });
@@ -62,7 +60,7 @@ fn errors_without_a_time_say_why() {
     assert_eq!(at(&report, "wopsip", 2e-3), (Standing::NotReached, Some(4.5e-6 * 4096.0)));
     assert_eq!(at(&report, "cr", 2e-3), (Standing::Undercut, Some(1e-6 * 32768.0)));
     // a table states both bounds and what they mean
-    let text = WorkPrecision::of(&report).to_text(100);
+    let text = report.work_to_text(100);
     assert!(text.contains("> 1.84e-2") && text.contains("< 3.28e-2"), "{text}");
     assert!(text.contains("> t: not reached by the finest level"), "{text}");
 
@@ -76,9 +74,10 @@ fn errors_without_a_time_say_why() {
     report.rows[4].status = Outcome::Cycling;
     assert_eq!((&report.rows[4].label[..], report.rows[4].level), ("sipg", 16));
     assert_eq!(at(&report, "sipg", 5e-3), (Standing::Failed, None));
-    let text = WorkPrecision::of(&report).to_text(100);
+    let text = report.work_to_text(100);
     assert!(text.contains("  failed  "), "{text}");
-    let verdicts = WorkPrecision::of(&report).subject("wopsip").verdicts();
+    report.program.subject = Some("wopsip".to_owned());
+    let verdicts = report.verdicts();
     assert!(verdicts[0].contains("; undercut on the coarsest mesh by cr"), "{verdicts:?}");
     // schemes of another scene
     let elsewhere = ["p1", "sipg"].map(|scheme| [8, 16].map(|n| measured(scheme, n, 1e-6)));
@@ -89,7 +88,7 @@ fn errors_without_a_time_say_why() {
     assert_eq!(standing(&report, "signorini-2d", "cr", 5e-3), (Standing::NotRun, None));
     assert_eq!(standing(&report, "signorini-2d", "p1", 5e-3), (Standing::Reached, None));
     let title = "signorini-2d: time to reach an error in L2\n";
-    let text = WorkPrecision::of(&report).to_text(100);
+    let text = report.work_to_text(100);
     let table = text.split(title).nth(1).unwrap();
     let of_cr = table.lines().find(|line| line.starts_with("cr ")).unwrap();
     let words: Vec<&str> = of_cr.split_whitespace().collect();
@@ -108,7 +107,7 @@ fn costs_at_an_error_are_time_unknowns_and_entries() {
         again.seconds.total *= 1.25;
         row.add_run(&again);
     }
-    let tables = WorkPrecision::of(&report).summary_tables();
+    let tables = report.work_tables();
     let costs =
         tables.iter().map(|table| table.to_text(100)).find(|t| t.contains("costs")).unwrap();
     let lines: Vec<&str> = costs.lines().collect();
@@ -116,16 +115,17 @@ fn costs_at_an_error_are_time_unknowns_and_entries() {
     // level 200^(1/2): 6 unknowns and 70 entries to its square
     let p1: Vec<&str> = lines[2].split_whitespace().collect();
     assert_eq!(p1, ["p1", "2.83e-3", "(1.00)", "1.25", "1200", "14000"]);
-    assert!(WorkPrecision::of(&report).to_text(100).contains("is up to 1.25 times the least"));
+    assert!(report.work_to_text(100).contains("is up to 1.25 times the least"));
 }
 
 #[test]
 fn the_verdict_is_a_sentence_made_from_the_figures() {
     let expected = "radial-2d: at an L2 error of 5e-3 wopsip takes 1.27e-2 s, 4.5 times the time of p1; 1.5 times that of sipg.";
-    let report = synthetic();
-    assert_eq!(WorkPrecision::of(&report).subject("wopsip").verdicts(), [expected]);
-    let fastest = &WorkPrecision::of(&report).verdicts()[0];
+    let mut report = synthetic();
+    let fastest = &report.verdicts()[0];
     assert!(fastest.contains("p1 takes 2.83e-3 s, 0.33 times the time of sipg; 0.22"), "{fastest}");
+    report.program.subject = Some("wopsip".to_owned());
+    assert_eq!(report.verdicts(), [expected]);
 }
 
 #[test]
@@ -165,46 +165,34 @@ fn the_rows_so_far_are_handed_over_after_every_round() {
         }
     });
     let mut kept = Vec::new();
-    let mut report = synthetic();
-    let before = report.rows.len();
-    let mut keep = |report: &Report| {
-        kept.push((*begun.borrow(), report.rows[before..].to_vec()));
-        Ok(())
-    };
-    Rounds::new(2).run_into(&[study], &mut report, &mut keep).unwrap();
-    let (runs, rows) = &kept[0];
-    assert_eq!((*runs, rows.len()), (4, 4));
-    assert!(rows.iter().all(|row| row.runs.as_ref().is_some_and(|runs| runs.len() == 1)));
-    assert_eq!((kept.len(), *begun.borrow()), (2, 8));
-    assert!(report.rows[before..].iter().all(|row| row.median_over_least() >= Some(1.0)));
-    // what is on disc is readable before the end and after it
     let scratch = Scratch::new("interrupted");
-    for complete in [false, true] {
-        report.complete = complete;
-        WorkPrecision::of(&report).write(&scratch.0).unwrap();
-        let read: Value = serde_json::from_str(&scratch.read("report.json")).unwrap();
-        assert_eq!(read["complete"], complete);
-        assert_eq!(read["rows"].as_array().unwrap().len(), before + 4);
-    }
-    assert!(scratch.read("radial-2d-time.svg").contains("wopsip"));
+    let journal = Journal::create(&scratch.0, Program::new("rounds", "f64", 1, 2)).unwrap();
+    let earlier = measured("cr", 8, 1.0);
+    journal.add(&earlier).unwrap();
+    let mut keep = |rows: &[Row]| {
+        kept.push((*begun.borrow(), rows.to_vec()));
+        journal.replace_after(1, rows)
+    };
+    let rows = Rounds::new(2).rows(&study, &mut keep).unwrap();
+    let (runs, first) = &kept[0];
+    assert_eq!((*runs, first.len()), (4, 4));
+    assert!(first.iter().all(|row| row.runs.as_ref().is_some_and(|runs| runs.len() == 1)));
+    assert_eq!((kept.len(), *begun.borrow()), (2, 8));
+    assert!(rows.iter().all(|row| row.median_over_least() >= Some(1.0)));
+    // what is on disc is readable before the end
+    let read = Report::read(&scratch.0).unwrap();
+    assert!(!read.complete && read.rows[0] == earlier && read.rows[1..] == rows);
 }
 
 #[test]
 fn a_tiny_study_measures_every_variant_alike() {
-    let study = |(name, linear)| {
-        let solver = unilateral::inequality::ActiveSet::default().linear(linear);
-        let study = tiny().scheme_on(Wopsip::default(), FacetMeans).linear_asked(name);
-        study.solver(solver).levels([8, 4])
-    };
-    let both = [("direct", LinearMethod::Direct), ("iterative", LinearMethod::Iterative)];
-    let report = Rounds::new(3).run(&both.map(study)).unwrap();
-    assert_eq!(report.rows.len(), 3 * 2 * 2);
+    let study = || tiny().scheme_on(Wopsip::default(), FacetMeans).levels([8, 4]);
+    let report = Rounds::new(3).run(&study()).unwrap();
+    assert_eq!(report.rows.len(), 3 * 2);
     assert!(report.rows.iter().all(Row::converged));
     assert_eq!((&report.program.precision[..], report.program.repeat), ("f64", 3));
     let names = names(&report);
-    assert_eq!(names.len(), 6);
-    assert_eq!(names[0], "p1, direct");
-    assert_eq!(names[5], "wopsip:facet-means, iterative");
+    assert_eq!(names, ["p1", "wopsip", "wopsip:facet-means"]);
     for row in &report.rows {
         let runs = row.runs.as_ref().unwrap();
         assert_eq!((runs.len(), runs[0]), (3, row.seconds.total));
@@ -219,77 +207,58 @@ fn a_tiny_study_measures_every_variant_alike() {
         assert_eq!(row.order.l2.is_some(), row.level == 8);
     }
     // the same counts and errors as a study in one round
-    let alone = study(both[0]).run().unwrap();
+    let alone = study().run().unwrap();
     for (a, row) in alone.rows.iter().zip(&report.rows) {
         let of = |row: &Row| (row.label.clone(), row.level, row.error.clone(), row.nonzeros);
         assert_eq!((of(a), &a.iterations), (of(row), &row.iterations));
     }
 }
 
+/// Adaptive meshes follow the bound, and the bound is what the verdict compares by.
 #[test]
-fn adaptive_meshes_stand_beside_uniform_ones() {
-    let adaptivity = Adaptivity::default().steps(3);
-    let studies = [tiny().levels([4, 8]), tiny().levels([4]).adaptive(adaptivity)];
-    assert_eq!(Rounds::new(2).check(&studies).unwrap(), 2 * 2 * 3);
-    let report = Rounds::new(2).run(&studies).unwrap();
+fn the_work_of_adaptive_meshes_is_that_of_all_steps() {
+    let study = tiny().levels([4]).adaptive(Adaptivity::default().steps(3));
+    let report = Rounds::new(2).run(&study).unwrap();
     assert!(report.rows.iter().all(Row::converged));
-    assert_eq!(report.rows.len(), 2 * (2 + 4));
-    assert_eq!(
-        names(&report),
-        ["p1, uniform", "wopsip, uniform", "p1, adaptive", "wopsip, adaptive"]
-    );
-    let alone = studies[1].run().unwrap();
-    let (adaptive, uniform): (Vec<&Row>, Vec<&Row>) =
-        report.rows.iter().partition(|row| row.theta.is_some());
-    assert_eq!(adaptive.len(), alone.rows.len());
-    for (row, alone) in adaptive.into_iter().zip(&alone.rows) {
+    let alone = study.run().unwrap();
+    assert_eq!(report.rows.len(), alone.rows.len());
+    for (row, alone) in report.rows.iter().zip(&alone.rows) {
         assert_eq!((row.level, &row.error, &row.bound), (alone.level, &alone.error, &alone.bound));
-        let runs = row.runs.as_ref().map(Vec::len);
-        assert_eq!((runs, row.peak_memory_bytes), (Some(2), None));
+        assert_eq!(row.runs.as_ref().map(Vec::len), Some(2));
         let Seconds { mesh, assemble, solve, bound, total, .. } = row.seconds;
         assert!((mesh + assemble + solve + bound.unwrap() - total).abs() <= 1e-9);
         assert_eq!(row.seconds_to(ErrorNorm::Bound), total);
     }
-    for row in uniform {
-        let with_bound = row.seconds.total + row.seconds.bound.unwrap();
-        assert_eq!(row.seconds_to(ErrorNorm::Bound), with_bound);
-        assert_eq!(row.seconds_to(ErrorNorm::H1), row.seconds.total);
-    }
-    // adaptive meshes follow the bound, and the bound is what the verdict compares by
-    let work = WorkPrecision::of(&report);
-    let verdict = &work.verdicts()[0];
+    let verdict = &report.verdicts()[0];
     assert!(verdict.starts_with("radial-2d: at an error bound of "), "{verdict}");
     let by_bound = |r: &&WorkAtError| r.norm == ErrorNorm::Bound;
-    for r in work.reach().iter().filter(by_bound) {
+    for r in report.work_at_errors().iter().filter(by_bound) {
         let of = |row: &&Row| Variant::of(row) == r.variant && row.bound.total > Some(r.error);
         let coarser = report.rows.iter().rfind(of);
         let is_above = |row: &Row| r.seconds.is_none_or(|s| s >= row.seconds_to(r.norm));
         assert!(coarser.is_none_or(is_above), "{r:?}");
     }
-    let text = work.to_text(100);
+    let text = report.work_to_text(100);
     assert!(text.contains("time to reach an error bound\n"), "{text}");
     assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
     let scratch = Scratch::new("work-adaptive");
-    work.write(&scratch.0).unwrap();
+    report.write(&scratch.0).unwrap();
     assert!(scratch.read("radial-2d-time.svg").contains("time in s, bound included"));
 }
 
 #[test]
 fn wrong_requests_are_refused_before_anything_runs() {
-    let message = |study: Study<2>| Rounds::new(1).run(&[study]).unwrap_err().to_string();
+    let message = |study: Study<2>| Rounds::new(1).run(&study).unwrap_err().to_string();
     assert!(message(tiny()).contains("needs levels"));
     let share = Adaptivity::default().theta(2.0);
     assert!(message(tiny().levels([4]).adaptive(share)).contains("share of marked cells"));
     assert!(message(tiny().levels([0, 4])).contains("at least one subdivision"));
     assert!(message(tiny().scheme(ConformingP1).levels([4])).contains("tell their rows apart"));
-    let twice = [tiny().levels([4]), tiny().levels([4, 8])];
-    assert!(Rounds::new(1).run(&twice).unwrap_err().to_string().contains("tell their rows apart"));
-    assert!(Rounds::new(1).run::<2>(&[]).is_err());
 }
 
 #[test]
 fn what_takes_too_long_is_not_repeated_and_finer_levels_are_listed() {
-    let report = Rounds::new(2).limit(1e-12).run(&[tiny().levels([4, 8, 16])]).unwrap();
+    let report = Rounds::new(2).limit(1e-12).run(&tiny().levels([4, 8, 16])).unwrap();
     assert_eq!(report.rows.len(), 6);
     for row in &report.rows {
         let runs = row.runs.as_ref().map(Vec::len);
@@ -308,12 +277,11 @@ fn errors_are_against_a_reference_where_there_is_one() {
     let begun = Cell::new(0);
     let study = || tiny().levels([4, 8]).reference(ConformingP2, 32);
     let rows = study().run().unwrap().rows;
-    let studies = [study().observer(|progress| {
+    let observed = study().observer(|progress| {
         begun.set(begun.get() + usize::from(matches!(progress, Progress::Started(..))));
-    })];
+    });
     // two rounds, and once against the reference, which is solved too
-    assert_eq!(Rounds::new(2).check(&studies).unwrap(), 2 * 4 + 4 + 1);
-    let found = Rounds::new(2).run(&studies).unwrap().rows;
+    let found = Rounds::new(2).run(&observed).unwrap().rows;
     assert_eq!(begun.get(), 2 * 4 + 4 + 1);
     for (row, alone) in found.iter().zip(&rows) {
         assert_eq!(row.against.as_deref(), Some("p2 at level 32"));

@@ -6,7 +6,6 @@ use unilateral::study::{Report, Row, Seconds};
 /// The row of one run of a scheme whose L2 error is `h^2` and whose time is `factor n^3`.
 pub fn measured(scheme: &str, level: usize, factor: f64) -> Row {
     let mut row = row("radial-2d", scheme, level);
-    row.linear_asked = Some("direct".into());
     let n = level as f64;
     row.error.l2 = Some(n.powi(-2));
     row.peak_memory_bytes = Some(1_000_000 * (level * level) as u64);

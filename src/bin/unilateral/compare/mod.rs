@@ -8,7 +8,6 @@ mod options;
 #[cfg(feature = "petsc")]
 mod over_processes;
 mod prepare;
-mod rounds;
 mod watcher;
 
 use std::path::PathBuf;
@@ -17,21 +16,25 @@ use dump::write_requests;
 use interrupt::Interrupt;
 pub use options::{Options, list};
 use options::{check_numbers, choose_schemes};
+pub use prepare::with_solvers;
 use prepare::{Run, prepare};
 use watcher::Watcher;
 
 use crate::asked::{FoundScenes, choose};
 use crate::one_run::take_directory;
 use crate::shared::{
-    Request, check_apart, check_writable, complain, print, print_to, terminal_width, use_threads,
-    write,
+    Request, check_writable, complain, print, print_to, terminal_width, use_threads, write,
 };
 
 use unilateral::in_its_dimension;
 use unilateral::inequality::SOLVERS;
+use unilateral::input::excerpt;
 use unilateral::scenes::AnyScene;
 use unilateral::scheme::NamedScheme;
 use unilateral::study::{Journal, Program, Report, Row, RowKey};
+
+/// The label of which the verdicts of rounds speak by default.
+const SUBJECT: &str = "wopsip";
 
 /// Whether every row converged.
 pub fn run(options: &Options) -> Request<bool> {
@@ -43,12 +46,9 @@ pub fn run(options: &Options) -> Request<bool> {
     }
     check_numbers(options)?;
     use_threads(options.asked.threads)?;
-    if let Some(count) = options.rounds {
-        let watcher = Watcher::new(options);
-        return rounds::run(Chosen::new(options, &watcher)?, options, &watcher, count);
-    }
     let copy = options.clone();
-    let resumes = options.asked.adaptive.is_none() && options.dump.is_none();
+    let cannot_resume = [options.asked.adaptive.is_some(), options.dump.is_some()];
+    let resumes = options.rounds.is_none() && cannot_resume == [false; 2];
     let interrupt = Interrupt::install(resumes, move |report| write_all(&copy, report))?;
     let watcher = Watcher::new(options);
     Chosen::new(options, &watcher)?.run(options, &watcher, &interrupt)
@@ -77,15 +77,29 @@ fn program(options: &Options, files: &[(&str, String)]) -> Program {
     let (name, repeat) =
         options.rounds.map_or(("compare", options.repeat), |count| ("work-precision", count));
     let program = Program::new(name, &options.precision, threads, repeat);
-    let program = options.asked.stated_in(program, files);
-    if options.rounds.is_some() {
-        return program;
-    }
+    let mut program = options.asked.stated_in(program, files);
+    program.subject = Some(options.subject.clone().unwrap_or(SUBJECT.to_owned()));
     let program = match options.history {
         true => program.with_request("history", "after every outer step"),
         false => program,
     };
-    options.linear.iter().fold(program, |program, linear| program.with_request("linear", linear))
+    match options.linear == "by-size" {
+        true => program,
+        false => program.with_request("linear", &options.linear),
+    }
+}
+
+/// Refuses a subject that no scheme is.
+fn check_subject(options: &Options, schemes: &[NamedScheme]) -> Request<()> {
+    let labels: Vec<String> = schemes.iter().map(NamedScheme::to_string).collect();
+    match options.subject.as_ref().filter(|subject| !labels.contains(subject)) {
+        None => Ok(()),
+        Some(subject) => Err(format!(
+            "--subject {}: no scheme has this label; there are: {}",
+            excerpt(subject),
+            labels.join(", ")
+        )),
+    }
 }
 
 /// The scenes, schemes and solvers that the options name.
@@ -103,14 +117,12 @@ struct Chosen {
 impl Chosen {
     fn new(options: &Options, watcher: &Watcher) -> Request<Self> {
         let schemes = choose_schemes(options)?;
+        check_subject(options, &schemes)?;
         let solvers: Vec<&str> = SOLVERS.iter().map(|s| s.0).collect();
         let solvers = choose("solver", &options.solvers, &["active-set"], &solvers)?;
         let warn = |warning| watcher.warn_once(warning);
-        let default = match options.rounds {
-            Some(_) => &rounds::SCENES[..],
-            None => &["hill-2d", "signorini-halves-2d"],
-        };
-        let FoundScenes { scenes, fingerprints, paths } = options.asked.scenes(default, &warn)?;
+        let default = ["hill-2d", "signorini-halves-2d"];
+        let FoundScenes { scenes, fingerprints, paths } = options.asked.scenes(&default, &warn)?;
         Ok(Self { scenes, schemes, solvers, fingerprints, inputs: paths })
     }
 
@@ -153,8 +165,8 @@ fn run_all(
     journal: &'static Journal,
 ) -> (Vec<Row>, Vec<String>) {
     let (mut rows, mut messages) = (Vec::new(), Vec::new());
-    let write = |run: &Run<'_>| write_requests(options, contents, (&run.keys, &run.constants));
-    if let Err(why) = runs.iter().try_for_each(write) {
+    let mut requests = runs.iter().map(|run| write_requests(options, contents, &run.keys));
+    if let Err(why) = requests.try_for_each(|written| written) {
         return (rows, vec![why]);
     }
     for Run { place, run, .. } in runs {
@@ -194,25 +206,20 @@ fn start(options: &Options, program: Program, runs: &[Run<'_>]) -> Request<&'sta
 /// Makes sure before the work, not after it, that the report can be written, over no file that was read, and by no
 /// other run.
 fn check_output(options: &Options, inputs: &[PathBuf]) -> Request<()> {
-    let json = options.json.as_ref().filter(|p| p.as_os_str() != "-");
-    let directories = options.dump.iter().chain([&options.out]);
-    check_apart(inputs, json, directories.clone())?;
-    check_writable(json)?;
-    directories.clone().try_for_each(|directory| take_directory(directory))
+    if let Some(json) = options.json.as_ref().filter(|path| path.as_os_str() != "-") {
+        check_writable(json, inputs)?;
+    }
+    let mut directories = options.dump.iter().chain([&options.out]);
+    directories.try_for_each(|directory| take_directory(directory))
 }
 
 /// Writes the report and prints its tables, of an incomplete one the files only.
 fn write_all(options: &Options, report: &Report) -> Request<()> {
     let to_stdout = options.json.as_deref().is_some_and(|p| p.as_os_str() == "-");
-    let work = options.rounds.map(|_| rounds::work(options, report));
-    let files = match work {
-        Some(work) => work.write(&options.out),
-        None => report.write(&options.out),
-    };
-    let text = || work.map_or_else(|| report.to_json(), |work| work.to_json());
+    let files = report.write(&options.out);
     let json = match &options.json {
-        Some(_) if to_stdout => print(&text()),
-        Some(path) => write(path, text()),
+        Some(_) if to_stdout => print(&report.to_json()),
+        Some(path) => write(path, report.to_json()),
         None => Ok(()),
     };
     files.map_err(|e| e.to_string()).and(json)
@@ -225,7 +232,9 @@ fn show(options: &Options, report: &Report) -> Request<()> {
     }
     let (out, is_whole, width) = (options.out.display(), report.complete, terminal_width());
     let tables = match (options.rounds, options.details) {
-        (Some(_), _) => rounds::work(options, report).to_text(width),
+        (Some(_), _) => {
+            format!("{}\n{}", report.details_to_text(width), report.work_to_text(width))
+        }
         (None, true) => {
             format!("{}\n{}", report.summary_to_text(width), report.details_to_text(width))
         }

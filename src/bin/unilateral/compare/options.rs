@@ -9,7 +9,6 @@ use unilateral::linear::LinearMethod;
 use unilateral::scenes;
 use unilateral::scheme::{NamedScheme, SCHEMES, SchemeOptions, keys_of_scheme};
 
-use super::rounds;
 use crate::asked::{Asked, OUTPUT, PROBLEM, SCHEMES as OF_SCHEMES, SOLVER};
 use crate::asked::{check_count, known, number, whole};
 use crate::shared::{Request, schemes};
@@ -41,9 +40,9 @@ pub struct Options {
     /// Solvers of the inequality, side by side; active-set by default
     #[arg(help_heading = SOLVER, long = "solver", value_delimiter = ',', value_name = "A[,B...]")]
     pub solvers: Vec<String>,
-    /// Linear solver: direct, iterative, by-size; several with --rounds
-    #[arg(help_heading = SOLVER, long, value_delimiter = ',', value_name = "A[,B...]")]
-    pub linear: Vec<String>,
+    /// Linear solver: direct, iterative, or by-size
+    #[arg(help_heading = SOLVER, long, value_name = "A", default_value = "by-size")]
+    pub linear: String,
     /// Scalar of the solve
     #[arg(help_heading = SOLVER, long, value_name = "NAME", value_parser = ["f64", "f32"], default_value = "f64")]
     pub precision: String,
@@ -129,11 +128,8 @@ fn with_keys((name, summary): &(&str, &str)) -> String {
 
 /// The schemes asked for; refuses a penalty factor that none of them takes.
 pub fn choose_schemes(options: &Options) -> Request<Vec<NamedScheme>> {
-    let default = match options.rounds {
-        Some(_) => &rounds::SCHEMES[..],
-        None => &["p1", "sipg", "wopsip", "wopsip:facet-means"],
-    };
-    let chosen = schemes(&options.asked.schemes, default)?;
+    let default = ["p1", "sipg", "wopsip", "wopsip:facet-means"];
+    let chosen = schemes(&options.asked.schemes, &default)?;
     for (key, given) in [("sigma", options.sigma), ("eta", options.eta)] {
         let takes = |name: &str| keys_of_scheme(name).contains(&key);
         if let Some(x) = given.filter(|_| !chosen.iter().any(|scheme| takes(scheme.name()))) {
@@ -159,20 +155,13 @@ pub fn check_numbers(options: &Options) -> Request<()> {
         }
     }
     options.asked.check()?;
-    let has_rounds = options.rounds.is_some();
-    if !has_rounds && options.asked.adaptive.is_some() && options.asked.reference.is_some() {
+    if options.asked.adaptive.is_some() && options.asked.reference.is_some() {
         return Err("--adaptive cannot be used with --reference, which needs uniform refinements of all meshes".to_owned());
     }
     check_count("--repeat", Some(options.repeat), MOST_REPEATS)?;
     let names = LINEAR.map(|of| of.0);
-    options.linear.iter().try_for_each(|name| known("linear solver", name, &names))?;
-    if options.linear.len() > 1 && !has_rounds {
-        return Err("--linear: several linear solvers stand side by side with --rounds".to_owned());
-    }
+    known("linear solver", &options.linear, &names)?;
     check_count("--rounds", options.rounds, MOST_REPEATS)?;
-    if has_rounds && options.asked.mesh.path.is_some() && options.asked.scenes.is_empty() {
-        return Err("--mesh: name the scenes that run on the mesh by --scene".to_owned());
-    }
     match options.limit > 0.0 {
         true => Ok(()),
         false => Err(format!("--limit {}: must be positive", options.limit)),
@@ -180,12 +169,9 @@ pub fn check_numbers(options: &Options) -> Request<()> {
 }
 
 impl Options {
-    /// The linear solvers asked for, each with its name.
-    pub fn linear(&self) -> Vec<(&'static str, LinearMethod)> {
-        let is_asked = |name: &str| match &self.linear[..] {
-            [] => name == "by-size",
-            some => some.iter().any(|of| of == name),
-        };
-        LinearMethod::NAMES.into_iter().filter(|of| is_asked(of.0)).collect()
+    /// The linear solver asked for.
+    pub fn linear(&self) -> LinearMethod {
+        let mut names = LinearMethod::NAMES.into_iter();
+        names.find(|of| of.0 == self.linear).map(|of| of.1).expect("the name has been checked")
     }
 }

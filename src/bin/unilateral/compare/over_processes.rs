@@ -138,7 +138,7 @@ fn check_options(options: &Options) -> Request<()> {
         ("--repeat", options.repeat > 1),
         ("--history", options.history),
         ("--fields-of-all-levels", options.fields_of_all_levels),
-        ("--linear direct", options.linear.iter().any(|name| name == "direct")),
+        ("--linear direct", options.linear == "direct"),
         ("--rounds", options.rounds.is_some()),
         ("--solver", options.solvers.iter().any(|name| name != "active-set")),
     ];

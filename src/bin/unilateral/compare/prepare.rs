@@ -9,18 +9,16 @@ use crate::shared::{Request, draw_solution, each_once};
 
 use unilateral::error::Error;
 use unilateral::inequality::solver_by_name;
-use unilateral::linear::LinearMethod;
 use unilateral::real::Precision;
 use unilateral::scenes::Scene;
 use unilateral::scheme::NamedScheme;
 use unilateral::study::{Journal, Row, RowKey, Study, file_name};
+use unilateral::work_precision::Rounds;
 
 /// A study that has been checked.
 pub struct Run<'a> {
     /// The keys of its rows.
     pub keys: Vec<RowKey>,
-    /// The constants of its problem.
-    pub constants: BTreeMap<String, f64>,
     /// Problem file, or scene and mesh, for messages.
     pub place: String,
     /// Runs it.
@@ -37,15 +35,20 @@ pub fn study<'a, const D: usize>(
     schemes: &[NamedScheme],
     watcher: &'a Watcher,
 ) -> Study<'a, D> {
-    let has_rounds = options.rounds.is_some();
     let levels = match &options.asked.levels[..] {
-        [] if options.asked.adaptive.is_some() && !has_rounds => Vec::new(),
-        [] => default_levels(D, scene.domain.is_mesh(), has_rounds),
+        [] if options.asked.adaptive.is_some() => Vec::new(),
+        [] if scene.domain.is_mesh() => vec![0, 1],
+        [] if D == 3 => vec![2, 4, 8],
+        [] => vec![8, 16, 32, 64, 128],
         some => each_once(some),
     };
     let study = Study::new(scene).levels(levels).observer(|progress| watcher.tell(&progress));
     let study = schemes.iter().fold(study, Study::named_scheme);
-    if options.no_fields || has_rounds { study } else { study.fields_to(&options.out) }
+    if options.no_fields || options.rounds.is_some() {
+        study
+    } else {
+        study.fields_to(&options.out)
+    }
 }
 
 /// Checks a study. Nothing is left of one that does not fit the mesh and was not asked for by name.
@@ -57,15 +60,15 @@ pub fn prepare<'a, const D: usize>(
 ) -> Request<Option<Run<'a>>> {
     let place = options.asked.place(&scene.name);
     let scene_name = scene.name.clone();
-    let constants = scene.problem.constants.clone();
     let has_mesh = scene.domain.is_mesh();
-    let linear = options.linear()[0].1;
+    let is_known = scene.problem.exact.is_some() || options.asked.reference.is_some();
     let mut study = study(scene, options, schemes, watcher);
     study = study.repeat(options.repeat).history(options.history).steps(watcher.steps());
     let drawn = RefCell::new(BTreeMap::new());
+    let is_drawn = options.rounds.is_none();
     study = study.each_solution(move |label, level, solved| {
         let finest = *drawn.borrow().get(label).unwrap_or(&0);
-        if solved.mesh().n_cells() <= MOST_CELLS && level >= finest {
+        if is_drawn && solved.mesh().n_cells() <= MOST_CELLS && level >= finest {
             drawn.borrow_mut().insert(label.to_owned(), level);
             // one on a finer mesh takes the place of a coarser one
             let name = format!("{scene_name}-{label}");
@@ -82,7 +85,7 @@ pub fn prepare<'a, const D: usize>(
     if let Some(directory) = &options.dump {
         study = study.inequalities_to(directory);
     }
-    study = with_solvers(study, solvers, linear, options)?;
+    study = with_solvers(study, solvers, options)?;
     if let Some(of) = options.asked.adaptive {
         study = study.adaptive(of);
     }
@@ -96,33 +99,41 @@ pub fn prepare<'a, const D: usize>(
     let keys = study.keys();
     // how many steps a bound takes is not known before
     if options.asked.adaptive.is_none() {
-        watcher.expect(D, has_mesh, keys.iter().map(|key| key.level));
+        // rounds solve once more against a reference
+        let once_more = usize::from(options.asked.reference.is_some());
+        for _ in 0..options.rounds.map_or(1, |count| count + once_more) {
+            watcher.expect(D, has_mesh, keys.iter().map(|key| key.level));
+        }
     }
-    let run = move |journal| Ok(study.journal(journal).run()?.rows);
-    Ok(Some(Run { keys, constants, place, run: Box::new(run) }))
+    let Some(count) = options.rounds else {
+        let run = move |journal| Ok(study.journal(journal).run()?.rows);
+        return Ok(Some(Run { keys, place, run: Box::new(run) }));
+    };
+    if !is_known {
+        watcher.warn_once(format!(
+            "warning: {place}: only bounds are reached, for no error is known; --reference N measures against a fine solution"
+        ));
+    }
+    let rounds = Rounds::new(count).limit(options.limit);
+    let run = move |journal: &Journal| {
+        // of the scenes before
+        let before = journal.report().rows.len();
+        rounds.rows(&study, &mut |rows| journal.replace_after(before, rows))
+    };
+    Ok(Some(Run { keys, place, run: Box::new(run) }))
 }
 
 /// A study with the solvers of these names.
 pub fn with_solvers<'a, const D: usize>(
     study: Study<'a, D>,
     solvers: &[String],
-    linear: LinearMethod,
     options: &Options,
 ) -> Request<Study<'a, D>> {
     let precision = Precision::by_name(&options.precision);
     let precision = precision.expect("the command line takes the names of precisions alone");
     solvers.iter().try_fold(study, |study, name| {
-        let solver = solver_by_name(name, linear, precision);
+        let solver = solver_by_name(name, options.linear(), precision);
         let solver = solver.ok_or_else(|| format!("there is no solver {name}"))?;
         Ok(study.boxed_solver(solver))
     })
-}
-
-/// The levels where none are named: with rounds one more on meshes and in space.
-fn default_levels(dimension: usize, on_mesh: bool, has_rounds: bool) -> Vec<usize> {
-    match dimension {
-        _ if on_mesh => (0..2 + usize::from(has_rounds)).collect(),
-        3 => [2, 4, 8].into_iter().chain(has_rounds.then_some(16)).collect(),
-        _ => vec![8, 16, 32, 64, 128],
-    }
 }

@@ -15,7 +15,7 @@ pub use options::Options;
 use crate::asked::command;
 use crate::mesh_file::MeshFile;
 use crate::one_run::take_directory;
-use crate::shared::{Failure, bar, check_apart, end_at_interrupt, print, tick, use_threads, warn};
+use crate::shared::{Failure, bar, end_at_interrupt, print, tick, use_threads, warn};
 use unilateral::stability::{Effort, Stability, Verdict};
 
 /// Runs the study; false if a job ended in an error, or with `--strict` if a criterion was missed.
@@ -42,7 +42,6 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
         study = study.mesh(&name.unwrap_or_default(), mesh);
     }
     study.check().map_err(|e| e.to_string())?;
-    check_apart(&options.meshes, None, [&options.out])?;
     take_directory(&options.out)?;
     end_at_interrupt("the report has the rows so far and is not complete")?;
     let report = study.run().map_err(Failure::of_work)?;
