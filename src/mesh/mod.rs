@@ -12,7 +12,6 @@
 
 mod bisection;
 mod boundary;
-mod box_search;
 mod components;
 mod domain;
 mod edges;
@@ -34,7 +33,6 @@ mod validate;
 
 pub use bisection::{BisectedMesh, Bisection};
 pub use boundary::{BoundaryCondition, BoundaryFacet};
-pub(crate) use box_search::BoxSearch;
 pub(crate) use components::Components;
 #[cfg(feature = "problem-files")]
 pub(crate) use domain::SIDES;
@@ -46,6 +44,7 @@ pub use error::{MeshError, MeshErrorKind};
 pub(crate) use facets::CELL_LIMIT;
 pub use facets::{Facets, HalfFacet, Neighbour, Neighbours};
 pub use geometry::CellGeometry;
+pub(crate) use geometry::box_search::BoxSearch;
 pub(crate) use geometry::describe_point;
 pub(crate) use geometry::simplex::{FACTORIAL, cofactors, cross, dot, with_zeros};
 pub use groups::BoundaryGroup;

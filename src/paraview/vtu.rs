@@ -120,6 +120,8 @@ impl<'a, const D: usize> VtuFile<'a, D> {
         }
         let place = |f: &BoundaryFacet| (f.cell as usize, usize::from(f.local));
         let (mesh, boundary) = (self.mesh, self.mesh.boundary());
+        // also where a part of a mesh has no such facet
+        self.numbers_of(name);
         for (facet, value) in facets.iter().zip(values) {
             match boundary.binary_search_by_key(facet, place) {
                 Ok(position) => self.numbers_of(name)[mesh.n_cells() + position] = *value,

@@ -2,7 +2,6 @@
 
 use super::exactness::monomials;
 use super::rule::Rule;
-use crate::arrays::array_of;
 
 /// Polynomials on the simplex of some dimension, sorted by degree and orthonormal in the inner product
 /// `(p, q)` = mean of `p q`. The first polynomial is the constant one.
@@ -64,7 +63,8 @@ fn power(point: &[f64; 4], powers: &[i32; 3]) -> f64 {
 
 /// The powers of `dimension` variables up to a degree, sorted by degree.
 fn powers(dimension: usize, degree: usize) -> Vec<[i32; 3]> {
-    let first = |all: Vec<usize>| array_of(|k| if k < dimension { all[k] as i32 } else { 0 });
+    let first =
+        |all: Vec<usize>| std::array::from_fn(|k| if k < dimension { all[k] as i32 } else { 0 });
     let mut all: Vec<[i32; 3]> = monomials(dimension + 1, degree).into_iter().map(first).collect();
     all.sort_by_key(|p| (p.iter().sum::<i32>(), std::cmp::Reverse(*p)));
     all

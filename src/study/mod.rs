@@ -3,6 +3,8 @@
 mod compatibility;
 mod extrapolate;
 #[cfg(feature = "report")]
+mod fields;
+#[cfg(feature = "report")]
 mod file_name;
 #[cfg(feature = "report")]
 mod journal;
@@ -10,6 +12,7 @@ mod memory;
 pub(crate) mod orders;
 mod part_figures;
 pub(crate) mod program;
+mod reference;
 pub(crate) mod report;
 pub(crate) mod row;
 mod runner;

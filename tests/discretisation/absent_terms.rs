@@ -66,7 +66,7 @@ fn counted(value: f64, calls: Calls) -> impl Fn(&Point<2>) -> f64 + Send + Sync 
 
 /// Each datum is evaluated once at each of its points: at nine points of 32 cells, at 32 barycentres, at eight points of
 /// four or eight facets, or at nodes. Where a node has a Dirichlet value as well, its bounds are evaluated once more; and
-/// Dirichlet data at the two ends of eight facets, for the constant that is taken off.
+/// Dirichlet data and gaps at the two ends of eight and four facets, for the constant that is taken off.
 #[test]
 fn data_are_evaluated_once_at_each_point() {
     let mesh = mesh(MIXED);
@@ -91,7 +91,7 @@ fn data_are_evaluated_once_at_each_point() {
     let obstacle =
         calls_on(&mesh, &ConformingP1, |of, calls| of.obstacle_below(counted(0.0, calls)));
     let gap = calls_on(&mesh, &ConformingP1, |of, calls| of.signorini(counted(0.0, calls)));
-    assert_eq!([obstacle, gap], [25 + 9, 2 * 4 + 1]);
+    assert_eq!([obstacle, gap], [25 + 9, 2 * 4 + 1 + 2 * 4]);
 }
 
 /// Boundary data where no side has their condition.

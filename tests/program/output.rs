@@ -149,7 +149,7 @@ fn all_commands_take_schemes_with_choices() {
     // a label that is too long for its column is broken
     assert!(labels[..2].iter().all(|label| text.contains(label)), "{text}");
     assert!(
-        text.contains("wopsip@factor=10,weight=") && text.contains("\nanisotropic\n"),
+        text.contains("wopsip@factor=10,") && text.contains("\nweight=anisotropic\n"),
         "{text}"
     );
 

@@ -105,9 +105,9 @@ fn the_report_has_every_key_and_file() {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let progress = stderr(&output);
     assert_eq!(progress.lines().count(), 2 * 4 * 2, "a line for each row: {progress}");
-    assert!(progress.starts_with("radial-2d, p1, active-set, level 4: converged, "), "{progress}");
+    assert!(progress.starts_with("hill-2d, p1, active-set, level 4: converged, "), "{progress}");
     let tables = stdout(&output);
-    assert!(tables.contains("radial-2d") && tables.contains("signorini-2d"), "{tables}");
+    assert!(tables.contains("hill-2d") && tables.contains("signorini-halves-2d"), "{tables}");
     assert!(tables.contains("seconds") && tables.contains(&scratch.path("out")), "{tables}");
 
     let report = read_json(&scratch.0.join("out/report.json"));
@@ -141,7 +141,7 @@ fn the_report_has_every_key_and_file() {
     let mut files: Vec<String> = endings.map(|ending| format!("report.{ending}")).into();
     files.extend([".lock", "request.json"].map(str::to_owned));
     files.extend(["convergence", "work_precision"].map(|plot| format!("{plot}.svg")));
-    for scene in ["radial-2d", "signorini-2d"] {
+    for scene in ["hill-2d", "signorini-halves-2d"] {
         for ending in ["vtu", "svg"] {
             let labels = ["p1", "sipg", "wopsip", "wopsip-facet-means"];
             files.extend(labels.map(|label| format!("{scene}-{label}.{ending}")));

@@ -415,7 +415,7 @@ fn bounds_are_guaranteed_or_name_what_is_not_proven() {
     let read: Row = serde_json::from_value(old).unwrap();
     assert!(read.bound.discrete.is_none() && read.error == rows[0].error);
     let text = report(rows.clone()).details_to_text(100);
-    assert!(text.contains(" bound/error ") && text.contains(" 1.75* "), "{text}");
+    assert!(text.contains(" bound/ ") && text.contains(" 1.75* "), "{text}");
     assert!(
         text.contains("* bound with terms that are not proven: quadrature, algebra\n"),
         "{text}"

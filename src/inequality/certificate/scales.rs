@@ -101,7 +101,7 @@ impl Sums {
         let mut sums = chunks.into_iter().fold(Sums::default(), Sums::merge);
         if let Some(penalised) = penalised {
             // u.K u + p.(S^-1 p) = u.(c - r) - p.g, without the cancellation of penalties
-            let work = penalised.work_on_data(|i| u[i].to_f64(), jump_multipliers, &owns);
+            let work = penalised.work_on_data(|i| u[i].to_f64(), jump_multipliers, owns);
             sums.add_energy(-work);
         } else if let Some(data) = dirichlet_energy {
             for term in data.terms.iter().filter(|term| owns(term.unknown as usize)) {

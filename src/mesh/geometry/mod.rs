@@ -1,5 +1,6 @@
-//! The affine geometry of one cell.
+//! The affine geometry of one cell, and the search of the cells at a point.
 
+pub(super) mod box_search;
 pub(super) mod simplex;
 
 use super::simplicial::Mesh;

@@ -1,7 +1,7 @@
 //! The data of a problem file on boundary groups.
 
-use super::check::{BOUNDARY, Entry, FINITE, NOT_NEGATIVE};
-use super::{Builder, DEFAULT, Done};
+use super::check::{BOUNDARY, DEFAULT, Entry, FINITE, NOT_NEGATIVE};
+use super::{BoundaryDatum, Builder, Done, OnGroup};
 use crate::mesh::{BoundaryCondition, Domain, HalfFacet, Mesh};
 use crate::problem::Robin;
 use crate::problem_file::error::ProblemFileErrorKind;
@@ -11,28 +11,6 @@ use crate::problem_file::table::Value;
 
 /// The kinds of boundary groups.
 const KINDS: &str = "\"dirichlet\", \"neumann\", \"robin\", \"friction\" or \"contact\"";
-
-/// What a file gives on a boundary group.
-#[derive(Clone)]
-enum Given {
-    Dirichlet(Formula),
-    Flux(Formula),
-    Robin { coefficient: Formula, value: Formula },
-    Friction(Formula),
-    Gap(Formula),
-}
-
-/// The table of a boundary group.
-#[derive(Clone)]
-pub(super) struct OnGroup {
-    condition: BoundaryCondition,
-    given: Given,
-    offset: usize,
-    shape: Option<Shape>,
-}
-
-/// A formula that is zero on a boundary group, and where the file has it.
-pub(super) type Shape = (Formula, usize);
 
 impl<'t, const D: usize> Builder<'_, 't, D> {
     /// Reads the tables of boundary groups.
@@ -84,14 +62,17 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
         };
         let formula = read(key, needed)?;
         let given = match kind_name {
-            "dirichlet" => Given::Dirichlet(formula),
-            "neumann" => Given::Flux(formula),
+            "dirichlet" => BoundaryDatum::Dirichlet(formula),
+            "neumann" => BoundaryDatum::Flux(formula),
             "robin" => {
                 let purpose = "`k` of alpha du/dn + k (u - value) = 0, not negative";
-                Given::Robin { coefficient: read("coefficient", Some(purpose))?, value: formula }
+                BoundaryDatum::Robin {
+                    coefficient: read("coefficient", Some(purpose))?,
+                    value: formula,
+                }
             }
-            "friction" => Given::Friction(formula),
-            _ => Given::Gap(formula),
+            "friction" => BoundaryDatum::Friction(formula),
+            _ => BoundaryDatum::Gap(formula),
         };
         let shape = table.get("shape").map(|value| {
             Ok((self.source.formula("shape", value, coordinates)?, value.span().start))
@@ -112,24 +93,24 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
         };
         let problem = &mut self.problem;
         match given {
-            Given::Dirichlet(value) => {
+            BoundaryDatum::Dirichlet(value) => {
                 enter(".value", FINITE, &value);
                 problem.dirichlet.give(group, value.datum());
             }
-            Given::Flux(flux) => {
+            BoundaryDatum::Flux(flux) => {
                 enter(".flux", FINITE, &flux);
                 problem.neumann.give(group, flux.flux());
             }
-            Given::Robin { coefficient, value } => {
+            BoundaryDatum::Robin { coefficient, value } => {
                 enter(".value", FINITE, &value);
                 enter(".coefficient", NOT_NEGATIVE, &coefficient);
                 problem.robin.give(group, Robin::new(coefficient.datum(), value.datum()));
             }
-            Given::Friction(threshold) => {
+            BoundaryDatum::Friction(threshold) => {
                 enter(".threshold", NOT_NEGATIVE, &threshold);
                 problem.friction.give(group, threshold.datum());
             }
-            Given::Gap(gap) => {
+            BoundaryDatum::Gap(gap) => {
                 enter(".gap", FINITE, &gap);
                 self.gaps.push((group.to_owned(), gap));
             }

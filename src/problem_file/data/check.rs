@@ -1,6 +1,5 @@
 //! Names and values of a problem file, held against the mesh.
 
-use super::DEFAULT;
 use crate::input::excerpt;
 use crate::mesh::{BoundaryCondition, Mesh, describe_point};
 use crate::problem::{BoundaryFlux, Exact, unknown_name};
@@ -24,6 +23,9 @@ const DIFFERENCE: f64 = 1e-5;
 
 /// A gradient may differ from difference quotients by this share of its size.
 const AGREEMENT: f64 = 1e-2;
+
+/// The group of cells in no group with data.
+pub(super) const DEFAULT: &str = "default";
 
 /// The table of data of the boundary.
 pub(super) const BOUNDARY: &str = "boundary";

@@ -18,8 +18,7 @@ use crate::mesh::{BoundaryCondition, BoxDomain, Domain, Mesh, MeshError, SIDES};
 use crate::problem::{Datum, Given, Problem, Tensor};
 use crate::real::{Matrix, Point};
 use crate::scenes::{AnyScene, Scene};
-use boundary::{OnGroup, Shape};
-use check::{Allowed, Checks, EXACT, Entry, FINITE, NOT_NEGATIVE, POSITIVE};
+use check::{Allowed, Checks, DEFAULT, EXACT, Entry, FINITE, NOT_NEGATIVE, POSITIVE};
 
 const KEYS: [&str; 11] = [
     "name",
@@ -34,10 +33,30 @@ const KEYS: [&str; 11] = [
     "exact",
     "values",
 ];
-/// The group of cells in no group with data.
-const DEFAULT: &str = "default";
 /// The data that may be given with a level, where they jump.
 const PIECEWISE: [&str; 3] = ["coefficient", "source", "reaction"];
+
+/// What a file gives on a boundary group.
+#[derive(Clone)]
+enum BoundaryDatum {
+    Dirichlet(Formula),
+    Flux(Formula),
+    Robin { coefficient: Formula, value: Formula },
+    Friction(Formula),
+    Gap(Formula),
+}
+
+/// The table of a boundary group.
+#[derive(Clone)]
+struct OnGroup {
+    condition: BoundaryCondition,
+    given: BoundaryDatum,
+    offset: usize,
+    shape: Option<Shape>,
+}
+
+/// A formula that is zero on a boundary group, and where the file has it.
+type Shape = (Formula, usize);
 
 /// The data that have been read, and what is to be checked.
 struct Builder<'s, 't, const D: usize> {

@@ -28,15 +28,15 @@ use crate::scenes::Scene;
 use crate::scheme::Scheme;
 use crate::study::compatibility::{check_fit, check_names, check_scheme};
 #[cfg(feature = "report")]
+use crate::study::fields::FieldFiles;
+#[cfg(feature = "report")]
 use crate::study::journal::Journal;
 use crate::study::memory::memory_of_process;
 use crate::study::orders::fill_orders;
 use crate::study::program::Program;
+use crate::study::reference::Reference;
 use crate::study::report::Report;
 use crate::study::row::{Row, RowKey};
-#[cfg(feature = "report")]
-use files::FieldFiles;
-use reference::Reference;
 
 /// Progress of a study.
 #[derive(Debug)]

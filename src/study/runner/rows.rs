@@ -1,6 +1,5 @@
 //! The rows of a study, one scheme on one level each: all fields are filled in here.
 
-use super::reference::FoundReference;
 use super::{Entry, Progress, Study};
 use crate::error::Error;
 use crate::inequality::{HistoryPoint, Outcome, explanation};
@@ -11,6 +10,7 @@ use crate::scenes::check::Violation;
 use crate::scenes::check_exact_on;
 use crate::scheme::ExpectedOrders;
 use crate::study::memory::peak_memory_bytes;
+use crate::study::reference::FoundReference;
 use crate::study::row::{Iterations, Row, Seconds};
 use crate::study::setting::setting;
 

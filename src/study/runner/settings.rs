@@ -4,7 +4,6 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::reference::Reference;
 use super::{Entry, Progress, Study};
 use crate::assemble::DataQuadrature;
 use crate::constraint::ConstraintSet;
@@ -15,6 +14,7 @@ use crate::problem::Problem;
 use crate::scheme::{NamedScheme, Scheme};
 #[cfg(feature = "report")]
 use crate::study::journal::Journal;
+use crate::study::reference::Reference;
 
 impl<'a, const D: usize> Study<'a, D> {
     /// Measures all rows against the solution of this scheme on a level, in place of the exact one: errors,

@@ -121,7 +121,11 @@ impl Chosen {
         let solvers: Vec<&str> = SOLVERS.iter().map(|s| s.0).collect();
         let solvers = choose("solver", &options.solvers, &["active-set"], &solvers)?;
         let warn = |warning| watcher.warn_once(warning);
-        let default = ["hill-2d", "signorini-halves-2d"];
+        let default = match options.asked.mesh.path {
+            None => ["hill-2d", "signorini-halves-2d"],
+            // their data are those of the solution on any mesh
+            Some(_) => ["radial-2d", "signorini-2d"],
+        };
         let FoundScenes { scenes, fingerprints, paths } = options.asked.scenes(&default, &warn)?;
         Ok(Self { scenes, schemes, solvers, fingerprints, inputs: paths })
     }

@@ -1,7 +1,7 @@
 //! Search for the boxes that may contain a point.
 
-use super::simplicial::Mesh;
 use crate::arrays::array_of;
+use crate::mesh::simplicial::Mesh;
 use crate::real::{Point, box_around};
 
 /// A place of a grid, whose boxes have two to the first number as their size.
