@@ -2,13 +2,14 @@
 
 use std::collections::BTreeSet;
 
-use crate::assemble::DataQuadrature;
+use crate::assemble::{DataQuadrature, Discretisation};
+use crate::constraint::Nodes;
 use crate::error::Error;
 use crate::mesh::{BoundaryCondition, BoxDomain, Domain, Mesh, describe_point};
 use crate::problem::{DataOnMesh, Given, Problem};
 use crate::real::Point;
 use crate::scenes::Scene;
-use crate::scheme::Scheme;
+use crate::scheme::{ConformingP1, Scheme};
 
 /// Checks that a scene fits its domain. Returns the barycentre of a facet of a mesh on which the exact solution of the
 /// scene breaks the contact condition, or none.
@@ -18,7 +19,8 @@ use crate::scheme::Scheme;
 /// the contact condition may fail there: it is tested on every contact facet.
 ///
 /// # Errors
-/// [`Error::GivenTwice`]; [`Error::UnfitMesh`] if mesh and scene do not agree on having a contact boundary.
+/// [`Error::GivenTwice`]; [`Error::UnfitMesh`] if mesh and scene do not agree on having a contact boundary, if bounds at
+/// its vertices exclude each other, or if the exact solution of the scene has not its Dirichlet data.
 pub fn check_fit<const D: usize>(scene: &Scene<D>) -> Result<Option<String>, Error> {
     scene.problem.check_given_once()?;
     let Domain::Mesh(mesh) = &scene.domain else {
@@ -26,7 +28,34 @@ pub fn check_fit<const D: usize>(scene: &Scene<D>) -> Result<Option<String>, Err
     };
     mesh.check_boundary_conditions()?;
     check_contact(scene)?;
+    check_data(scene, mesh).map_err(|why| match why {
+        Error::EmptyConstraint { .. } => Error::unfit_mesh(&scene.name, why),
+        other => other,
+    })?;
     Ok(first_failure(scene, mesh))
+}
+
+/// Checks that there is an admissible value at each vertex, and that the exact solution has the Dirichlet data.
+fn check_data<const D: usize>(scene: &Scene<D>, mesh: &Mesh<D>) -> Result<(), Error> {
+    let problem = scene.problem.clone().on(Nodes);
+    Discretisation::new(&ConformingP1, &problem, mesh, DataQuadrature::default())?.bounds()?;
+    let Some(exact) = &problem.exact else { return Ok(()) };
+    let data = DataOnMesh::new(&problem, mesh)?;
+    for facet in mesh.boundary().iter().filter(|f| f.condition == BoundaryCondition::Dirichlet) {
+        for v in mesh.facet_vertices(facet.cell as usize, usize::from(facet.local)) {
+            let x = &mesh.vertices()[v as usize];
+            let given = data.dirichlet.of(usize::from(facet.group)).map_or(0.0, |u| u.at(x));
+            let solution = exact.value.at(x);
+            if (given - solution).abs() > 1e-6 * (given.abs() + solution.abs() + 1.0) {
+                let place = describe_point(x);
+                let why = format!(
+                    "its exact solution is {solution} near {place}, where its Dirichlet value is {given}"
+                );
+                return Err(Error::unfit_mesh(&scene.name, why));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Checks that an element can impose the inequality of a problem and that the facet form is made for the

@@ -2,10 +2,11 @@
 
 use std::collections::HashSet;
 
+use unilateral::error::Error;
 use unilateral::mesh::{BoundaryCondition, Mesh, MeshErrorKind};
 use unilateral::mesh::{BoxDomain, Domain};
 use unilateral::real::Point;
-use unilateral::scenes::{Scene, disc_2d, lshape_2d, radial, spiral_2d};
+use unilateral::scenes::{Scene, disc_2d, hill, lshape_2d, radial, spiral_2d};
 use unilateral::scheme::ConformingP1;
 use unilateral::study::Study;
 
@@ -125,11 +126,15 @@ fn studies_run_on_both_shapes_from_coarser_levels() {
 fn a_mesh_on_which_an_obstacle_leaves_no_room_for_the_datum_does_not_fit() {
     let unit = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
     let mesh = Mesh::<2>::kuhn_box(&unit, [4, 4]).unwrap();
-    let run = |scene: Scene<2>| {
-        let study = Study::<2>::new(scene.domain(mesh.clone())).scheme(ConformingP1).levels([0]);
-        study.run().unwrap().rows.remove(0)
+    let check = |scene: Scene<2>| {
+        Study::<2>::new(scene.domain(mesh.clone())).scheme(ConformingP1).levels([0]).check()
     };
-    let message = run(spiral_2d()).message.unwrap();
-    assert!(message.contains("no admissible value"), "{message}");
-    assert!(run(radial::<2>(1.0)).converged());
+    for (scene, expected) in [
+        (spiral_2d(), "the mesh does not fit spiral-2d: no admissible value"),
+        (hill::<2>(), "the mesh does not fit hill-2d: its exact solution is 0.2401 near (0"),
+    ] {
+        let Err(Error::UnfitMesh(why)) = check(scene) else { panic!("it fits") };
+        assert!(why.starts_with(expected), "{why}");
+    }
+    check(radial::<2>(1.0)).unwrap();
 }
