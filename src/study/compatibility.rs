@@ -19,8 +19,9 @@ use crate::scheme::{ConformingP1, Scheme};
 /// the contact condition may fail there: it is tested on every contact facet.
 ///
 /// # Errors
-/// [`Error::GivenTwice`]; [`Error::UnfitMesh`] if mesh and scene do not agree on having a contact boundary, if bounds at
-/// its vertices exclude each other, or if the exact solution of the scene has not its Dirichlet data.
+/// [`Error::GivenTwice`]; [`Error::UnfitMesh`] if mesh and scene do not agree on having a contact boundary, if the data
+/// of the scene are no data on the mesh: not finite, without an admissible value at a vertex, or Dirichlet data that are
+/// not those of the exact solution.
 pub fn check_fit<const D: usize>(scene: &Scene<D>) -> Result<Option<String>, Error> {
     scene.problem.check_given_once()?;
     let Domain::Mesh(mesh) = &scene.domain else {
@@ -29,16 +30,20 @@ pub fn check_fit<const D: usize>(scene: &Scene<D>) -> Result<Option<String>, Err
     mesh.check_boundary_conditions()?;
     check_contact(scene)?;
     check_data(scene, mesh).map_err(|why| match why {
-        Error::EmptyConstraint { .. } => Error::unfit_mesh(&scene.name, why),
+        Error::DataNotFinite(_)
+        | Error::CoefficientNotPositive(_)
+        | Error::EmptyConstraint { .. } => Error::unfit_mesh(&scene.name, why),
         other => other,
     })?;
     Ok(first_failure(scene, mesh))
 }
 
-/// Checks that there is an admissible value at each vertex, and that the exact solution has the Dirichlet data.
+/// Checks that data are finite, that each vertex has an admissible value, and that the exact solution has the Dirichlet
+/// data.
 fn check_data<const D: usize>(scene: &Scene<D>, mesh: &Mesh<D>) -> Result<(), Error> {
     let problem = scene.problem.clone().on(Nodes);
-    Discretisation::new(&ConformingP1, &problem, mesh, DataQuadrature::default())?.bounds()?;
+    let space = Discretisation::new(&ConformingP1, &problem, mesh, DataQuadrature::default())?;
+    space.load().and_then(|_| space.bounds())?;
     let Some(exact) = &problem.exact else { return Ok(()) };
     let data = DataOnMesh::new(&problem, mesh)?;
     for facet in mesh.boundary().iter().filter(|f| f.condition == BoundaryCondition::Dirichlet) {

@@ -119,16 +119,19 @@ fn coefficients_must_fit_the_precision() {
     assert!(run(Precision::Single, 1e-3).converged());
 }
 
-/// On a mesh that reaches where a scene has no data rows say so.
+/// A mesh that reaches where a scene has no data is refused before anything runs on it, also if
+/// other meshes of the scene would do.
 #[test]
 fn meshes_beyond_the_data_of_a_scene_do_not_fit() {
     let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(2.0));
     let mesh = Mesh::<2>::kuhn_box(&square, [4, 4]).unwrap();
+    let runs = std::cell::Cell::new(0);
     let run = |problem: Problem<2>| {
         let mut scene = scene(problem);
         scene.domain = mesh.clone().into();
         let study = Study::<2>::new(scene).scheme(ConformingP1).levels([0]);
-        study.run().unwrap().rows.remove(0)
+        let study = study.observer(|_| runs.set(runs.get() + 1));
+        study.check().and_then(|()| study.run().map(|_| ()))
     };
     let far = |x: &Point<2>| if x[0] > 1.0 { f64::NAN } else { 0.0 };
     let above = |x: &Point<2>| x[0] - 1.5;
@@ -139,8 +142,10 @@ fn meshes_beyond_the_data_of_a_scene_do_not_fit() {
         Problem::new().obstacle_below(above),
         Problem::new().coefficient(move |x| 1.0 + far(x)),
     ] {
-        let row = run(problem);
-        assert!(!row.converged() && row.message.is_some(), "{row:?}");
+        let found = run(problem);
+        assert!(matches!(found, Err(Error::UnfitMesh(_))), "{found:?}");
     }
-    assert!(run(Problem::new().constant_source(1.0)).converged());
+    assert_eq!(runs.get(), 0, "nothing was told to run");
+    run(Problem::new().constant_source(1.0)).unwrap();
+    assert!(runs.get() > 0);
 }

@@ -93,7 +93,9 @@ pub fn prepare<'a, const D: usize>(
         study = study.named_reference(scheme, *level);
     }
     match study.check() {
-        Err(Error::UnfitMesh(_)) if !options.asked.scenes_are_named() => return Ok(None),
+        Err(Error::UnfitMesh(_) | Error::UnknownGroup(_)) if !options.asked.scenes_are_named() => {
+            return Ok(None);
+        }
         other => other.map_err(|e| format!("{place}: {e}"))?,
     }
     let keys = study.keys();
