@@ -25,6 +25,7 @@ pub struct Errors {
 
 impl Errors {
     /// Whether the broken energy norm is the broken H1 seminorm, as without coefficient and reaction.
+    #[cfg(feature = "report")]
     pub(crate) fn is_energy_h1(&self) -> bool {
         match (self.h1, self.broken_energy) {
             (Some(h1), Some(energy)) => (h1 - energy).abs() <= 1e-12 * h1,
