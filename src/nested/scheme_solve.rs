@@ -24,8 +24,8 @@ use crate::scheme::Scheme;
 /// means of a function of another scheme (problem stretched of the tests, `cr`).
 const STRETCHED: f64 = 16.0;
 
-/// Tolerances of the solves one after the other that end at a share of the error bound, relative to the solution in the
-/// energy norm; after them follows a solve to rounding.
+/// Tolerances of a sequence of solves, relative to the energy norm of the solution. The sequence ends as soon as the
+/// algebraic error is at most the wanted share of the error bound; the last solve goes down to rounding.
 const TOLERANCES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
 
 impl<'a, const D: usize> NestedIteration<'a, D> {

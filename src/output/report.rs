@@ -44,9 +44,9 @@ impl Report {
         csv::lines(&self.rows)
     }
 
-    /// Removes the files of this report from a directory, where they are: those that [`Report::write`]
-    /// and [`Journal`](crate::study::Journal) write but `report.json`, and the fields and pictures of its rows. Another report that is written there then has
-    /// no file of this one beside it.
+    /// Removes the files of this report from a directory, except `report.json`: the files that [`Report::write`] and
+    /// [`Journal`](crate::study::Journal) write, and the fields and pictures of its rows. Another report written to the
+    /// directory afterwards stands there without files of this one.
     pub fn remove_files(&self, directory: impl AsRef<Path>) {
         let mut names: Vec<String> =
             ["csv", "jsonl", "md", "tex", "html"].map(|end| format!("report.{end}")).into();

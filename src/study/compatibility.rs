@@ -51,7 +51,7 @@ fn check_data<const D: usize>(scene: &Scene<D>, mesh: &Mesh<D>) -> Result<(), Er
             let x = &mesh.vertices()[v as usize];
             let given = data.dirichlet.of(usize::from(facet.group)).map_or(0.0, |u| u.at(x));
             let solution = exact.value.at(x);
-            if (given - solution).abs() > 1e-6 * (given.abs() + solution.abs() + 1.0) {
+            if (given - solution).abs() > ROUNDED * (given.abs() + solution.abs() + 1.0) {
                 let place = describe_point(x);
                 let why = format!(
                     "its exact solution is {solution} near {place}, where its Dirichlet value is {given}"
@@ -129,7 +129,7 @@ fn check_contact<const D: usize>(scene: &Scene<D>) -> Result<(), Error> {
     Err(Error::unfit_mesh(&scene.name, why))
 }
 
-/// Error allowed in the contact condition: vertices of mesh files are rounded.
+/// Error allowed in conditions on the exact solution on the boundary: vertices of mesh files are rounded.
 const ROUNDED: f64 = 1e-6;
 
 /// The first contact facet on which the exact solution breaks the contact condition.

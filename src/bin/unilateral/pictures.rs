@@ -72,7 +72,7 @@ fn study<'a, const D: usize>(
     asked.adaptive.into_iter().fold(study, Study::adaptive)
 }
 
-/// Draws the solutions of a scene; whether all solves converged.
+/// Draws the solutions of a scene. Returns whether all solves converged.
 fn draw<const D: usize>(
     options: &Options,
     scene: &Scene<D>,

@@ -192,7 +192,8 @@ fn jumps_of_slopes<T: Real>(inequality: &Inequality<T>) -> Vec<(Contact, f64)> {
     jumps
 }
 
-/// The bound that the value `x` touches: the nearer one, if its gap is at most the step. None for a fixed unknown.
+/// The bound that the value `x` touches: the nearer bound, if the gap to it is at most `step`. A fixed unknown touches
+/// none.
 fn touched_bound<T: Real>(bound: &Bound<T>, x: f64, step: f64) -> Contact {
     let (side, gap, _) = nearer_bound(bound, x, step);
     match bound.fixed_value() {

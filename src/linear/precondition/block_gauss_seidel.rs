@@ -33,7 +33,7 @@ use crate::real::Real;
 /// `E` is positive.
 const MARGIN: f64 = 1.1;
 
-/// The rows of a symmetric matrix, with ascending columns, and the number by which its entries are divided.
+/// The rows of a symmetric matrix, with ascending columns, and a scale: the smoother is that of the matrix divided by it.
 #[derive(Clone, Copy)]
 pub(crate) struct ScaledRows<'m, T> {
     pub row: &'m (dyn Fn(usize) -> (&'m [u32], &'m [T]) + Sync),

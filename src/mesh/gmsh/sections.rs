@@ -5,7 +5,7 @@
 //! | tags of nodes and elements | four bytes | eight bytes |
 //! | groups | one with each element | those of the entity of a block, in `$Entities` |
 //! | `$Nodes` | tag and point of each | blocks: all tags, then all points |
-//! | `$Elements` | with a header each; binary: one for those of one type | blocks with a header |
+//! | `$Elements` | text: a header for each element; binary: a header for all elements of one type | blocks with a header |
 
 use std::collections::HashMap;
 

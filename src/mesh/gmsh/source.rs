@@ -125,7 +125,7 @@ impl<'a> Source<'a> {
         let number = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
         number.ok_or_else(|| self.unexpected_word(expected, word))
     }
-    /// A count that is text also in binary files, on a line of its own.
+    /// Reads a count on a line of its own. Counts are text in binary files too.
     pub fn line_of_count(&mut self, expected: &str) -> Result<u64, GmshError> {
         self.skip_blank_lines();
         let count = self.text(expected)?;
