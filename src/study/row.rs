@@ -181,6 +181,9 @@ pub struct Row {
     /// Where the solution has largest and smallest values, by name; rows without such values do not have the key.
     #[cfg_attr(feature = "report", serde(default, skip_serializing_if = "BTreeMap::is_empty"))]
     pub values_at: BTreeMap<String, Vec<f64>>,
+    /// The share of the error bound at which the solve might end; rows of solves to rounding do not have the key.
+    #[cfg_attr(feature = "report", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub tolerance: Option<f64>,
     /// Iteration counts.
     pub iterations: Iterations,
     /// The certificate.
@@ -243,6 +246,7 @@ impl Row {
             penetration: None,
             values: BTreeMap::new(),
             values_at: BTreeMap::new(),
+            tolerance: None,
             iterations: Iterations::default(),
             certificate: Certificate::INVALID,
             seconds: Seconds::default(),

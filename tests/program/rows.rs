@@ -3,7 +3,7 @@
 use serde_json::Value;
 use unilateral::scenes;
 
-use super::run::{Scratch, read_json, rows, stderr, stdout};
+use super::run::{Scratch, number, read_json, rows, stderr, stdout};
 use crate::support::keys::ROW_KEYS;
 
 /// Keys of inner objects, and which of their values may be null in a row that converged.
@@ -176,6 +176,24 @@ fn runs_have_the_same_bits_on_any_number_of_threads() {
         without_times(scratch.report(&options))
     };
     assert_eq!(report(1), report(3));
+}
+
+/// A solve with a tolerance ends earlier, with the error of one to rounding. Rows say the tolerance, and a report without
+/// it is one of another request.
+#[test]
+fn solves_end_at_a_tolerance() {
+    let scratch = Scratch::new("tolerance");
+    let options = "--scene hill-2d --scheme sipg --linear iterative --levels 64 --no-fields";
+    let whole = rows(&scratch.report(options))[0].clone();
+    let early = rows(&scratch.report(&format!("{options} --tolerance 0.1")))[0].clone();
+    assert!(whole.get("tolerance").is_none());
+    assert_eq!((&early["status"], &early["tolerance"]), (&"converged".into(), &0.1.into()));
+    assert!(number(&early, &["iterations", "linear"]) < number(&whole, &["iterations", "linear"]));
+    let [of_early, of_whole] = [&early, &whole].map(|row| number(row, &["error", "h1"]));
+    assert!((of_early / of_whole - 1.0).abs() < 0.02, "{of_early} {of_whole}");
+    let resumed = scratch.run(&format!("{options} --resume"));
+    assert_eq!(resumed.status.code(), Some(2));
+    assert!(stderr(&resumed).contains("tolerance 0.1"), "{}", stderr(&resumed));
 }
 
 /// The history is that of one more solve: all else is as without it. A report without it is one of another request.

@@ -81,6 +81,7 @@ pub struct Study<'a, const D: usize> {
     repeat: usize,
     keeps_history: bool,
     has_cold_start: bool,
+    tolerance: Option<f64>,
     #[cfg(feature = "report")]
     journal: Option<&'a Journal>,
     #[cfg(feature = "report")]
@@ -135,6 +136,7 @@ impl<'a, const D: usize> Study<'a, D> {
             repeat: 1,
             keeps_history: false,
             has_cold_start: false,
+            tolerance: None,
             #[cfg(feature = "report")]
             journal: None,
             #[cfg(feature = "report")]
@@ -171,6 +173,10 @@ impl<'a, const D: usize> Study<'a, D> {
         if self.solvers().iter().any(|solver| solver.precision() != self.precision()) {
             let allowed = "one precision for all solvers of a study";
             return Err(Error::parameter("precision", "f64 and f32", allowed));
+        }
+        if let Some(share) = self.tolerance.filter(|share| !(*share > 0.0 && share.is_finite())) {
+            let allowed = "a share of the error bound is positive and finite";
+            return Err(Error::parameter("tolerance", share.to_string(), allowed));
         }
         let domain = &self.scene.domain;
         self.levels.iter().try_for_each(|&level| check_level(domain, level, parts))?;
@@ -344,6 +350,10 @@ impl<'a, const D: usize> Study<'a, D> {
         nested: NestedIteration<'s, D>,
         solver: &Arc<dyn InequalitySolver<f64> + 's>,
     ) -> NestedIteration<'s, D> {
+        let nested = match self.tolerance {
+            Some(share) => nested.tolerance(share),
+            None => nested,
+        };
         nested
             .shared_solver(solver.clone())
             .quadrature(self.quadrature)

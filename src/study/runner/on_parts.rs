@@ -117,6 +117,7 @@ impl<const D: usize> Study<'_, D> {
             ("adaptive meshes", self.adaptive.is_some()),
             ("reference", self.reference.is_some()),
             ("history", self.keeps_history),
+            ("tolerance", self.tolerance.is_some()),
             ("values", !self.scene.problem.values.is_empty()),
         ];
         match asked.iter().find(|(_, is_asked)| *is_asked) {

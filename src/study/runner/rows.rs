@@ -89,6 +89,7 @@ impl<const D: usize> Study<'_, D> {
             theta: self.adaptive.map(|of| of.theta),
             solver: solver.to_owned(),
             expected_order,
+            tolerance: self.tolerance,
             // all rows of a request have the same keys
             history: self.keeps_history.then(Vec::new),
             peak_memory_bytes: peak_memory_bytes(),

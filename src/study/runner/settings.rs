@@ -118,6 +118,24 @@ impl<'a, const D: usize> Study<'a, D> {
         self.has_cold_start = has_cold_start;
         self
     }
+    /// Makes solves end where the bound on their algebraic error is at most this share of the error bound, in place of
+    /// the limit of the certificate: see [`NestedIteration::tolerance`](crate::nested::NestedIteration::tolerance). Rows
+    /// say the share; a reference is solved to rounding.
+    ///
+    /// ```
+    /// use unilateral::prelude::*;
+    /// # fn main() -> Result<(), Error> {
+    /// let study = Study::<2>::new(scenes::hill()).scheme(Sipg::default()).levels([16]);
+    /// let row = &study.tolerance(0.1).run()?.rows[0];
+    /// assert_eq!((row.status.name(), row.tolerance), ("converged", Some(0.1)));
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn tolerance(mut self, share: f64) -> Self {
+        self.tolerance = Some(share);
+        self
+    }
     /// Sets the quadrature of data.
     #[must_use]
     pub fn quadrature(mut self, quadrature: DataQuadrature) -> Self {

@@ -83,6 +83,10 @@ fn program(options: &Options, files: &[(&str, String)]) -> Program {
         true => program.with_request("history", "after every outer step"),
         false => program,
     };
+    let program = match options.tolerance {
+        Some(share) => program.with_request("tolerance", share),
+        None => program,
+    };
     match options.linear == "by-size" {
         true => program,
         false => program.with_request("linear", &options.linear),

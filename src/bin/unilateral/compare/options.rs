@@ -27,13 +27,16 @@ pub struct Options {
     /// Name every scene, scheme, constraint placement and solver, and end
     #[arg(help_heading = PROBLEM, long)]
     pub list: bool,
-    /// Interior penalty X / h_F, for schemes without a penalty
-    #[arg(help_heading = OF_SCHEMES, long, value_name = "X", allow_negative_numbers = true, value_parser = number)]
+    /// Interior penalty X / h_F, for schemes without a penalty; not on the page of help, since `--scheme NAME@sigma=X` says
+    /// it, as the two below
+    #[arg(help_heading = OF_SCHEMES, long, value_name = "X", allow_negative_numbers = true, value_parser = number,
+        hide = true)]
     pub sigma: Option<f64>,
     /// WOPSIP weight X / h_F^3 (P2: h_F^5), for schemes without a penalty
-    #[arg(help_heading = OF_SCHEMES, long, value_name = "X", allow_negative_numbers = true, value_parser = number)]
+    #[arg(help_heading = OF_SCHEMES, long, value_name = "X", allow_negative_numbers = true, value_parser = number,
+        hide = true)]
     pub eta: Option<f64>,
-    /// Placement of schemes named without one; not on the page of help, since `--scheme NAME:PLACEMENT` says it
+    /// Placement of schemes named without one
     #[arg(help_heading = OF_SCHEMES, long, value_name = "PLACEMENT", default_value = "vertices",
         value_parser = CONSTRAINT_SETS.map(|set| set.0), hide = true)]
     pub constraint: String,
@@ -46,6 +49,10 @@ pub struct Options {
     /// Scalar of the solve
     #[arg(help_heading = SOLVER, long, value_name = "NAME", value_parser = ["f64", "f32"], default_value = "f64")]
     pub precision: String,
+    /// End solves with an algebraic error below X times the error bound
+    #[arg(help_heading = SOLVER, long, value_name = "X", allow_negative_numbers = true, value_parser = number,
+        conflicts_with_all = ["history", "dump"])]
+    pub tolerance: Option<f64>,
     /// Every time is the least of K runs
     #[arg(help_heading = SOLVER, long, value_name = "K", allow_negative_numbers = true, value_parser = whole, default_value_t = 1)]
     pub repeat: usize,

@@ -137,6 +137,7 @@ fn check_options(options: &Options) -> Request<()> {
         ("--precision f32", options.precision == "f32"),
         ("--repeat", options.repeat > 1),
         ("--history", options.history),
+        ("--tolerance", options.tolerance.is_some()),
         ("--fields-of-all-levels", options.fields_of_all_levels),
         ("--linear direct", options.linear == "direct"),
         ("--rounds", options.rounds.is_some()),

@@ -86,6 +86,9 @@ pub fn prepare<'a, const D: usize>(
         study = study.inequalities_to(directory);
     }
     study = with_solvers(study, solvers, options)?;
+    if let Some(share) = options.tolerance {
+        study = study.tolerance(share);
+    }
     if let Some(of) = options.asked.adaptive {
         study = study.adaptive(of);
     }
