@@ -24,7 +24,7 @@ use crate::real::Real;
 /// them to full relative precision; computed from `u` they suffer from cancellation in `M u`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PenalisedMatrix<T> {
-    /// `K`: its blocks one after the other, each by rows, positive semidefinite.
+    /// `K`: its blocks one after the other, each by rows; positive semidefinite but for a negative reaction.
     pub blocks: Vec<T>,
     /// `M`.
     pub jumps: Jumps<T>,
@@ -223,6 +223,31 @@ impl<T: Real> PenalisedMatrix<T> {
             |jumps: Range<usize>| jumps.map(of_jump).filter(|work| *work != 0.0).collect();
         let not_zero: Vec<Vec<f64>> = map_chunks(self.n_jumps(), of_chunk);
         not_zero.iter().flatten().sum()
+    }
+
+    /// Two sums of absolute values of terms of the residual `(c - K u - M^T p)_i`: the sum over the terms with free
+    /// unknowns and jump multipliers `p`, and the sum over the terms with fixed unknowns and the load.
+    pub(crate) fn residual_term_magnitudes(
+        &self,
+        (i, load): (usize, T),
+        u: impl Fn(usize) -> f64,
+        jump_multipliers: &[T],
+        is_fixed: impl Fn(usize) -> bool,
+    ) -> [f64; 2] {
+        let n = self.block_size();
+        let block = i / n;
+        let (mut free, mut fixed) = (0.0, load.to_f64().abs());
+        for j in block * n..(block + 1) * n {
+            let size = (self.blocks[i * n + j % n].to_f64() * u(j)).abs();
+            *(if is_fixed(j) { &mut fixed } else { &mut free }) += size;
+        }
+        for side in self.jumps.sides_of(block) {
+            let terms = self.terms_of(side.jump());
+            let own = terms.iter().find(|t| side.unknown(t) as usize == i);
+            let coefficient = own.map_or(0.0, |t| t.weight.to_f64());
+            free += (coefficient * jump_multipliers[side.jump()].to_f64()).abs();
+        }
+        [free, fixed]
     }
 
     /// The jump residual `g - M u + S^-1 p`, one entry, for the multiplier `p` of that jump.

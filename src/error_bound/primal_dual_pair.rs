@@ -14,7 +14,7 @@ use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
 use crate::assemble::stiffness::zero_local;
 use crate::element::Entity;
-use crate::inequality::Solution;
+use crate::inequality::{Solution, residual as residual_of};
 use crate::instances::compiled;
 use crate::measure::Counts;
 use crate::mesh::{BoundaryCondition, Neighbour, Neighbours};
@@ -135,21 +135,14 @@ impl<const D: usize> Discretisation<'_, D> {
         counts: Counts<'_>,
     ) -> Result<PrimalDualPair<D>, NoBound> {
         let (space, u) = (&self.space, &solution.values[..]);
-        let penalised = inequality.penalised.as_ref();
-        let jump_multipliers =
-            penalised.map(|p| match solution.jump_multipliers.len() == p.n_jumps() {
+        let jump_multipliers = inequality.penalised.as_ref().map(|p| {
+            match solution.jump_multipliers.len() == p.n_jumps() {
                 true => solution.jump_multipliers.clone(),
                 false => p.jump_multipliers(|i| u[i]),
-            });
-        let mut residual = vec![0.0; space.dofs.size()];
-        match (penalised, &jump_multipliers) {
-            (Some(penalised), Some(multipliers)) => {
-                let value = |i: usize| u[i];
-                let (load, of_jump) = (&inequality.load, |k: usize| multipliers[k]);
-                penalised.residual_with_jump_multipliers(load, value, of_jump, &mut residual);
             }
-            _ => inequality.residual_f64(u, &mut residual),
-        }
+        });
+        let mut residual = vec![0.0; space.dofs.size()];
+        residual_of(inequality, u, &solution.jump_multipliers, &mut residual);
         inequality.distribution().update(&mut residual);
         let bounds = &inequality.own_bounds()[..];
         let contact = &inequality.states_at_bounds(&solution.contact)[..];

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use super::Outcome;
 use super::certificate::positive_diagonal;
 use crate::algebra::Inequality;
-use crate::linear::direct::{FactorError, Factors, StaticCondensation};
+use crate::linear::direct::{DirectSystem, FactorError, Factors};
 use crate::linear::krylov::symmetric_part;
 use crate::parallel::vectors::map_chunks;
 use crate::real::Real;
@@ -105,19 +105,17 @@ fn over_all_parts<T: Real>(
     }
 }
 
-/// Factors the matrix, or its symmetric part, on all unknowns that are not fixed; a penalised matrix, which is
-/// symmetric, by static condensation. On the kernel, where it is known, the matrix need not be positive.
+/// Factors the matrix, or its symmetric part, on all unknowns that are not fixed. On the kernel, where it is known, the
+/// matrix need not be positive.
 fn factor_free_unknowns<T: Real>(inequality: &Inequality<T>) -> Result<(), FactorError> {
     let mut free = inequality.free_unknowns();
     // kernel vectors have no common unknowns: with one unknown of each fixed the matrix is definite on the others
     let pinned: Vec<u32> = inequality.kernel.iter().filter_map(|w| Some(w.first()?.0)).collect();
     free.retain(|i| !pinned.contains(i));
-    if let Some(penalised) = &inequality.penalised {
+    if inequality.symmetric {
         let mut is_free = vec![false; inequality.size()];
         free.iter().for_each(|&i| is_free[i as usize] = true);
-        return StaticCondensation::new(penalised, &inequality.matrix)
-            .factor(&is_free, &[])
-            .map(|_| ());
+        return DirectSystem::new(inequality).factor(&is_free, &[], &mut None).map(|_| ());
     }
     Factors::new(&symmetric_part(inequality), true, &free).map(|_| ())
 }

@@ -6,7 +6,7 @@
 //! | file | content |
 //! |---|---|
 //! | `method` | [`LinearMethod`]: the choice between direct and iterative solvers |
-//! | `direct/` | Cholesky and LU factors, orders of elimination, static condensation |
+//! | `direct/` | the systems of an inequality, Cholesky and LU factors, static condensation |
 //! | `krylov/` | conjugate gradients and GMRES |
 //! | `precondition/` | preconditioners: multigrid, auxiliary spaces, splitting into facet means and jumps |
 

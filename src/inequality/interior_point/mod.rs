@@ -19,10 +19,10 @@ use super::validation::check;
 use super::{ActiveSet, InequalitySolver, InitialGuess, Outcome, Solution};
 use crate::algebra::Inequality;
 use crate::instances::compiled;
-use crate::linear::direct::{MatrixFactors, StaticCondensation};
+use crate::linear::direct::{DirectSystem, MixedVector, SystemFactors};
 use crate::real::Real;
 use bound_pairs::{BoundPair, mean_product, ratio_test};
-pub(super) use newton_system::{MixedVector, NewtonSystem};
+pub(super) use newton_system::NewtonSystem;
 
 /// Largest number of linear systems of a run. Runs of the file of figures take 13 in the mean and 24 at
 /// most.
@@ -52,7 +52,7 @@ const LEAST_GAIN: f64 = 1.01;
 /// [`ActiveSet`] runs this method where its active set stagnates, and begins anew from the contact states at its end.
 ///
 /// Where the matrix is a [`PenalisedMatrix`](crate::algebra::PenalisedMatrix) `K + M^T S M`, the jump multipliers
-/// `p = S (M u - g)` are unknowns too: no penalty weight is added to a stiffness.
+/// `p = S (M u - g)` are unknowns too, whose residual has no sum of a penalty weight and a stiffness.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct InteriorPoint;
 
@@ -82,20 +82,17 @@ fn checked_run<T: Real>(inequality: &Inequality<T>, recorder: &Recorder<'_>) -> 
     if let Err(outcome) = check(inequality) {
         return Solution::without_iterate(inequality, outcome);
     }
-    let penalised = inequality.penalised.as_ref();
-    let condensation = penalised.map(|p| StaticCondensation::new(p, &inequality.matrix));
-    run(inequality, condensation.as_ref(), MAX_SYSTEMS, recorder)
+    run(inequality, &DirectSystem::new(inequality), MAX_SYSTEMS, recorder)
 }
 
-/// A run with at most so many linear systems. The static condensation must be given if the matrix is penalised, and
-/// only then.
+/// A run with at most so many linear systems.
 pub(super) fn run<'a, T: Real>(
     inequality: &'a Inequality<T>,
-    condensation: Option<&StaticCondensation<'a, T>>,
+    system: &DirectSystem<'a, T>,
     max_systems: usize,
     recorder: &Recorder<'_>,
 ) -> Solution<T> {
-    let system = NewtonSystem::new(inequality, condensation);
+    let system = NewtonSystem::new(inequality, system);
     let mut iterate = match InteriorIterate::start(inequality, system) {
         Ok(iterate) => iterate,
         Err(error) => return Solution::without_iterate(inequality, error.into()),
@@ -187,7 +184,7 @@ impl<T: Real> InteriorIterate<'_, '_, T> {
     /// over the bounds of an unknown. Sets the changes of the pairs.
     fn direct(
         &mut self,
-        factors: &MatrixFactors<T>,
+        factors: &SystemFactors<T>,
         mut right: MixedVector,
         product_change: impl Fn(&BoundPair) -> f64,
     ) -> MixedVector {

@@ -11,13 +11,13 @@ use super::active_set::prescribed_value;
 use super::certificate::violations::certify_with_rounding;
 use super::certificate::{is_final, nearer_bound, positive_diagonal};
 use super::history::Recorder;
-use super::interior_point::{MixedVector, NewtonSystem};
+use super::interior_point::NewtonSystem;
 use super::recession::{press_onto_bounds, solve_with_kernel};
 use super::validation::check;
 use super::{InequalitySolver, InitialGuess, Outcome, Solution};
 use crate::algebra::Inequality;
 use crate::instances::compiled;
-use crate::linear::direct::{FactorError, StaticCondensation};
+use crate::linear::direct::{DirectSystem, FactorError, MixedVector};
 use crate::real::Real;
 use latent::Latent;
 
@@ -91,9 +91,8 @@ fn run<T: Real>(
     if let Err(outcome) = check(inequality) {
         return Solution::without_iterate(inequality, outcome);
     }
-    let penalised = inequality.penalised.as_ref();
-    let condensation = penalised.map(|p| StaticCondensation::new(p, &inequality.matrix));
-    let system = NewtonSystem::new(inequality, condensation.as_ref());
+    let system = DirectSystem::new(inequality);
+    let system = NewtonSystem::new(inequality, &system);
     let mut iterate = match ProximalIterate::start(inequality, system, guess) {
         Ok(iterate) => iterate,
         Err(error) => return Solution::without_iterate(inequality, error.into()),

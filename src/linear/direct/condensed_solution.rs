@@ -1,7 +1,5 @@
 //! Solutions by the factors of a [`StaticCondensation`].
 
-use super::assembled_sum::solve_assembled;
-use super::factors::Factors;
 use super::static_condensation::{BlockInverses, CondensedFactors, StaticCondensation};
 use crate::algebra::NO_INDEX;
 use crate::real::Real;
@@ -12,25 +10,7 @@ impl<T: Real> StaticCondensation<'_, T> {
     /// `u.K u + p.(S^-1 p) = u.r - p.t`.
     pub fn solve(
         &self,
-        factors: &CondensedFactors<T>,
-        is_free: &[bool],
-        r: &mut [f64],
-        t: &mut [f64],
-    ) -> f64 {
-        match factors {
-            CondensedFactors::FacetMeans { inverses, schur_complement } => {
-                self.solve_condensed((inverses, schur_complement), is_free, r, t)
-            }
-            CondensedFactors::Assembled(factors) => {
-                solve_assembled(self.penalised, factors, is_free, r, t)
-            }
-        }
-    }
-
-    /// [`StaticCondensation::solve`] by the inverses of blocks and the factors of the Schur complement.
-    fn solve_condensed(
-        &self,
-        (inverses, schur_complement): (&BlockInverses, &Factors<T>),
+        CondensedFactors { inverses, schur_complement }: &CondensedFactors<T>,
         is_free: &[bool],
         r: &mut [f64],
         t: &mut [f64],

@@ -66,21 +66,10 @@ impl<T: Real> Factors<T> {
         symmetric: bool,
         free: &[u32],
     ) -> Result<Self, FactorError> {
-        if symmetric { Self::shifted(matrix, free, &[]) } else { Self::lu(&matrix.submatrix(free)) }
-    }
-
-    /// The Cholesky factor of the rows and columns `free` (ascending) of `A + D`, `A` a symmetric matrix. `shift` is the
-    /// nonnegative diagonal of `D`, or empty for zero.
-    ///
-    /// # Errors
-    /// See [`FactorError`].
-    pub(crate) fn shifted(
-        matrix: &SparseMatrix<T>,
-        free: &[u32],
-        shift: &[f64],
-    ) -> Result<Self, FactorError> {
+        if !symmetric {
+            return Self::lu(&matrix.submatrix(free));
+        }
         let mut lower = matrix.lower_triangle(free);
-        add_to_diagonal(&mut lower, free, shift)?;
         let symbolic = symbolic_factor(&lower)?;
         Self::cholesky(&mut lower, &symbolic)
     }
@@ -90,7 +79,7 @@ impl<T: Real> Factors<T> {
     ///
     /// # Errors
     /// See [`FactorError`].
-    pub(crate) fn cholesky(
+    pub(super) fn cholesky(
         lower: &mut SparseMatrix<T>,
         symbolic: &SymbolicFactor,
     ) -> Result<Self, FactorError> {
@@ -186,7 +175,7 @@ impl<T: Real> Factors<T> {
     ///
     /// # Errors
     /// See [`FactorError`].
-    pub(crate) fn lu(matrix: &SparseMatrix<T>) -> Result<Self, FactorError> {
+    pub(super) fn lu(matrix: &SparseMatrix<T>) -> Result<Self, FactorError> {
         if matrix.size() == 0 {
             return Ok(Self { size: 0, factorisation: Factorisation::Empty });
         }
@@ -235,7 +224,7 @@ impl<T: Real> Factors<T> {
 ///
 /// # Errors
 /// [`FactorError::NotPositive`] if a row to which a positive number is added stores no diagonal entry.
-pub(crate) fn add_to_diagonal<T: Real>(
+pub(super) fn add_to_diagonal<T: Real>(
     submatrix: &mut SparseMatrix<T>,
     free: &[u32],
     diagonal: &[f64],

@@ -19,7 +19,7 @@
 //! contains sums of weights and stiffnesses. There are two cases:
 //!
 //! * The means are dependent although all unknowns are free: a quadratic function vanishes at both Gauss points of
-//!   every edge. The assembled matrix is then factored in place of the Schur complement (`assembled_sum`).
+//!   every edge. There is no condensation then.
 //! * The means are dependent in a few blocks only, because unknowns are fixed. The weights of these blocks are then
 //!   replaced by an upper limit; iterative refinement by the caller restores the solution for the true weights.
 //!
@@ -41,32 +41,16 @@ pub(crate) struct StaticCondensation<'a, T> {
     pub(super) penalised: &'a PenalisedMatrix<T>,
     /// The facet mean of each jump; [`NO_INDEX`] if the jump has one side only.
     means: Vec<u32>,
-    reduced: ReducedMatrix<'a, T>,
-}
-
-/// The matrix that is factored.
-enum ReducedMatrix<'a, T> {
-    /// The Schur complement on facet means: its lower triangle, all values zero, and after the first factorisation the
-    /// pattern of its factor.
-    FacetMeans { pattern: SparseMatrix<T>, symbolic: OnceLock<SymbolicFactor> },
-    /// The assembled matrix.
-    Assembled(&'a SparseMatrix<T>),
-}
-
-/// Factors of a matrix on some unknowns.
-pub(crate) enum MatrixFactors<T> {
-    /// Of the assembled matrix.
-    Assembled(Factors<T>),
-    /// Of a penalised matrix by static condensation.
-    Condensed(Box<CondensedFactors<T>>),
+    /// The lower triangle of the Schur complement on facet means, all values zero.
+    pattern: SparseMatrix<T>,
+    /// The pattern of its factor, after the first factorisation.
+    symbolic: OnceLock<SymbolicFactor>,
 }
 
 /// The factors of a matrix `K + M^T S M`.
-pub(crate) enum CondensedFactors<T> {
-    /// The inverses of all blocks with their jump multipliers, and the factors of the Schur complement.
-    FacetMeans { inverses: BlockInverses, schur_complement: Factors<T> },
-    /// The factors of the assembled matrix on its free unknowns.
-    Assembled(Factors<T>),
+pub(crate) struct CondensedFactors<T> {
+    pub(super) inverses: BlockInverses,
+    pub(super) schur_complement: Factors<T>,
 }
 
 /// The inverses of all blocks with their jump multipliers, by rows: free unknowns of the block, then jump multipliers.
@@ -77,8 +61,8 @@ pub(crate) struct BlockInverses {
 }
 
 impl<'a, T: Real> StaticCondensation<'a, T> {
-    /// The condensation of a matrix, given as a sum and assembled.
-    pub fn new(penalised: &'a PenalisedMatrix<T>, assembled: &'a SparseMatrix<T>) -> Self {
+    /// The condensation of a matrix; none if the means over the sides of a block are dependent functions.
+    pub fn new(penalised: &'a PenalisedMatrix<T>) -> Option<Self> {
         let mut n_means = 0;
         let mean = |jump: usize| {
             let is_shared = penalised.jumps.blocks_of(jump).iter().all(Option::is_some);
@@ -87,15 +71,14 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
             mean
         };
         let means = (0..penalised.n_jumps()).map(mean).collect();
-        let reduced = ReducedMatrix::Assembled(assembled);
-        let mut condensation = Self { penalised, means, reduced };
-        let has_independent_means = (0..condensation.n_blocks())
-            .all(|block| condensation.has_independent_means(block, |_| true));
-        if has_independent_means {
-            let pattern = condensation.lower_pattern(n_means as usize);
-            condensation.reduced = ReducedMatrix::FacetMeans { pattern, symbolic: OnceLock::new() };
+        let pattern = SparseMatrix::by_rows(0..0, |_, _, _| {});
+        let mut condensation = Self { penalised, means, pattern, symbolic: OnceLock::new() };
+        let is_independent = |block: usize| condensation.has_independent_means(block, |_| true);
+        if !(0..condensation.n_blocks()).all(is_independent) {
+            return None;
         }
-        condensation
+        condensation.pattern = condensation.lower_pattern(n_means as usize);
+        Some(condensation)
     }
 
     /// The lower triangle of the Schur complement, all values zero: facet means of the same block are coupled.
@@ -170,25 +153,16 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         is_free: &[bool],
         shift: &[f64],
     ) -> Result<CondensedFactors<T>, FactorError> {
-        match &self.reduced {
-            ReducedMatrix::FacetMeans { pattern, symbolic } => {
-                let (inverses, mut lower) = self.condense(is_free, shift, pattern.clone())?;
-                let symbolic = match symbolic.get() {
-                    Some(symbolic) => symbolic,
-                    None => {
-                        let new = symbolic_factor(&lower)?;
-                        once(symbolic, || new)
-                    }
-                };
-                let schur_complement = Factors::cholesky(&mut lower, symbolic)?;
-                Ok(CondensedFactors::FacetMeans { inverses, schur_complement })
+        let (inverses, mut lower) = self.condense(is_free, shift, self.pattern.clone())?;
+        let symbolic = match self.symbolic.get() {
+            Some(symbolic) => symbolic,
+            None => {
+                let new = symbolic_factor(&lower)?;
+                once(&self.symbolic, || new)
             }
-            ReducedMatrix::Assembled(matrix) => {
-                let n = self.penalised.size() as u32;
-                let free: Vec<u32> = (0..n).filter(|&i| is_free[i as usize]).collect();
-                Factors::shifted(matrix, &free, shift).map(CondensedFactors::Assembled)
-            }
-        }
+        };
+        let schur_complement = Factors::cholesky(&mut lower, symbolic)?;
+        Ok(CondensedFactors { inverses, schur_complement })
     }
 
     /// Inverts the blocks of `K + D` on the free unknowns and adds the Schur complement to `matrix`, which has its
@@ -222,28 +196,5 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
             starts.push(entries.len());
         }
         Ok((BlockInverses { entries, starts }, matrix))
-    }
-
-    /// Two sums of absolute values of terms of the residual `(c - K u - M^T p)_i`: the sum over the
-    /// terms with free unknowns and jump multipliers `p`, and the sum over the terms with fixed unknowns and
-    /// the load.
-    pub fn residual_term_magnitudes(
-        &self,
-        (i, load): (usize, T),
-        u: &dyn Fn(usize) -> f64,
-        p: &[T],
-        is_fixed: &dyn Fn(usize) -> bool,
-    ) -> [f64; 2] {
-        let n = self.penalised.block_size();
-        let block = i / n;
-        let (mut free, mut fixed) = (0.0, load.to_f64().abs());
-        for j in block * n..(block + 1) * n {
-            let size = (self.penalised.blocks[i * n + j % n].to_f64() * u(j)).abs();
-            *(if is_fixed(j) { &mut fixed } else { &mut free }) += size;
-        }
-        for &side in self.sides(block) {
-            free += (self.mean_coefficient(side, i) * p[side.jump()].to_f64()).abs();
-        }
-        [free, fixed]
     }
 }

@@ -282,8 +282,7 @@ impl<'s, 'a, T: Real> Ladder<'s, 'a, T> {
         let left = self.settings.max_outer.saturating_sub(self.iterate.outer);
         let max_systems = left.min(interior_point::MAX_SYSTEMS);
         let (inequality, recorder) = (self.inequality, self.recorder);
-        let solution =
-            interior_point::run(inequality, solver.condensation(), max_systems, recorder);
+        let solution = interior_point::run(inequality, solver.system(), max_systems, recorder);
         self.iterate.outer += solution.outer;
         if solution.outcome.has_iterate() {
             let Solution { values, contact, jump_multipliers, outcome, .. } = solution;
