@@ -25,7 +25,7 @@ use crate::scheme::Scheme;
 const STRETCHED: f64 = 16.0;
 
 /// Tolerances of a sequence of solves, relative to the energy norm of the solution. The sequence ends as soon as the
-/// algebraic error is at most the wanted share of the error bound; the last solve goes down to rounding.
+/// algebraic error is at most the wanted share of the error bound; the last solve has no tolerance.
 const TOLERANCES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
 
 impl<'a, const D: usize> NestedIteration<'a, D> {
@@ -88,6 +88,12 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
                 .or_else(|| no_digits_of_stiffness(system.discretisation(), precision)),
             Some(_) => None,
         };
+        let is_p1 = scheme.is_conforming_linear(system.mesh());
+        let is_stretched = scheme.degree() == 1 && system.mesh().largest_aspect() > STRETCHED;
+        let conforming = match is_stretched && !is_p1 && system.part().is_none() {
+            true => self.conforming(position, start.as_deref())?,
+            false => Vec::new(),
+        };
         self.enter(Phase::Solve);
         let hierarchy = self.hierarchy().map(|hierarchy| (hierarchy, position));
         let (mut solved, solve_seconds) = match &refusal {
@@ -97,7 +103,9 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
                 (Solved::new(system, none, hierarchy), 0.0)
             }
             None => match self.tolerance {
-                Some(share) => self.solve_to_share(system, guess, (hierarchy, share))?,
+                Some(share) => {
+                    self.solve_to_share((system, hierarchy), guess, &conforming, share)?
+                }
                 None => {
                     let (solution, seconds) = self.run(&system, &guess)?;
                     (Solved::new(system, solution, hierarchy), seconds)
@@ -116,13 +124,10 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         }
         solved.mesh_seconds = self.p1.meshes.seconds(position);
         solved.solve_seconds = solve_seconds;
-        let is_p1 = scheme.is_conforming_linear(solved.mesh());
+        solved.conforming = conforming;
         if is_p1 && self.adaptive_meshes().is_some() {
             // every step of an adaptive sequence is solved: the next one starts from here
             self.p1.keep_solved(position, start.as_deref(), &solved);
-        }
-        if !is_p1 && scheme.degree() == 1 && solved.mesh().largest_aspect() > STRETCHED {
-            solved.conforming = self.conforming(position, start.as_deref(), &solved)?;
         }
         if let Some(start) = start {
             // conforming P1 on the same mesh is no coarser level
@@ -176,17 +181,15 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         }
     }
 
-    /// The values at vertices of a conforming function on the mesh of a result: that from which its scheme started, of
-    /// an equation, which needs no start, one that is solved for it. None from a cold start, and on parts of a mesh.
+    /// The values at vertices of a conforming function on a mesh: that from which a scheme starts, of an equation, which
+    /// needs no start, one that is solved for it. None from a cold start.
     fn conforming(
         &mut self,
         position: usize,
         start: Option<&P1Solution>,
-        solved: &Solved<'_, D>,
     ) -> Result<Vec<f64>, Error> {
         let is_equation = !self.p1.problem.is_constrained() && !self.has_cold_start;
         match start {
-            _ if solved.part().is_some() => Ok(Vec::new()),
             Some(start) => Ok(start.values.clone()),
             None if is_equation => Ok(self.p1.solve(position)?.values.clone()),
             None => Ok(Vec::new()),
@@ -214,9 +217,10 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
     /// that on the error. Counts are those of all solves, seconds those of all solves and of the bounds between them.
     fn solve_to_share(
         &self,
-        mut system: System<'a, D>,
+        (mut system, hierarchy): (System<'a, D>, Option<(&'a Hierarchy<D>, usize)>),
         mut guess: InitialGuess<f64>,
-        (hierarchy, share): (Option<(&'a Hierarchy<D>, usize)>, f64),
+        conforming: &[f64],
+        share: f64,
     ) -> Result<(Solved<'a, D>, f64), Error> {
         let (mut outer, mut linear, mut systems, mut stages) = (0, 0, Some(0), Vec::new());
         let mut seconds = 0.0;
@@ -229,6 +233,7 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
             stages.append(&mut solution.stages);
             let is_found = solution.outcome == Outcome::Converged;
             let mut solved = Solved::new(system, solution, hierarchy);
+            solved.conforming = conforming.to_vec();
             let clock = Instant::now();
             let is_small = is_found && solved.algebraic_share().is_some_and(|own| own <= share);
             if is_small || tolerance.is_none() {

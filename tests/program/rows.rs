@@ -194,6 +194,14 @@ fn solves_end_at_a_tolerance() {
     let resumed = scratch.run(&format!("{options} --resume"));
     assert_eq!(resumed.status.code(), Some(2));
     assert!(stderr(&resumed).contains("tolerance 0.1"), "{}", stderr(&resumed));
+    let timed = scratch.report(
+        "--rounds 2 --tolerance 0.1 --scene hill-2d --scheme sipg --linear iterative --levels 64",
+    );
+    let timed = &rows(&timed)[0];
+    assert_eq!(
+        (&timed["tolerance"], &timed["iterations"]),
+        (&early["tolerance"], &early["iterations"])
+    );
 }
 
 /// The history is that of one more solve: all else is as without it. A report without it is one of another request.

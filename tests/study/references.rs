@@ -196,24 +196,34 @@ fn a_problem_of_ones_own_needs_a_name_and_a_mesh() {
     assert!(error.to_string().contains("at least 3"), "{error}");
 }
 
-/// A solution that presses where there is a gap does not fulfil the contact condition: it measures nothing.
+/// A solution that presses where there is a gap does not fulfil the contact condition, in whatever units: it measures
+/// nothing. Dirichlet data that are not its own are refused.
 #[test]
 fn a_solution_that_breaks_the_contact_condition_has_no_errors() {
-    let row_of = |gap: f64| {
+    let study_of = |[gap, fixed]: [f64; 2], unit: f64| {
         let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
         let mesh = Mesh::<2>::kuhn_box(&square.side(1, 0, BoundaryCondition::Contact), [2, 2]);
         let problem = Problem::new()
-            .dirichlet(|x| 1.0 - x[1])
-            .signorini(move |_| gap)
-            .exact(|x| 1.0 - x[1], |_| Point::from([0.0, -1.0]));
+            .dirichlet(move |x| unit * (fixed - x[1]))
+            .signorini(move |_| unit * gap)
+            .exact(move |x| unit * (1.0 - x[1]), move |_| Point::from([0.0, -unit]));
         let scene = Scene::new("pressed", mesh.unwrap(), problem);
-        Study::<2>::new(scene).scheme(ConformingP1).levels([1]).run().unwrap().rows.remove(0)
+        Study::<2>::new(scene).scheme(ConformingP1).levels([1])
     };
-    let row = row_of(1.0);
-    assert_eq!((row.against.as_deref(), &row.warnings[..]), (Some("exact"), &[][..]));
-    // the flux presses by one, and the gap is open by a half
-    let row = row_of(0.5);
-    assert_eq!((row.against, row.error.l2), (None, None));
-    let expected = "the exact solution breaks the contact condition of this mesh at (0.25";
-    assert!(row.warnings.iter().any(|warning| warning.contains(expected)), "{:?}", row.warnings);
+    for unit in [1.0, 1e-9, 1e9] {
+        let row_of = |gap: f64| study_of([gap, 1.0], unit).run().unwrap().rows.remove(0);
+        let row = row_of(1.0);
+        assert_eq!((row.against.as_deref(), &row.warnings[..]), (Some("exact"), &[][..]));
+        // the flux presses by one, and the gap is open by a half
+        let row = row_of(0.5);
+        assert_eq!((row.against, row.error.l2), (None, None));
+        let expected = "the exact solution breaks the contact condition of this mesh at (0.25";
+        assert!(
+            row.warnings.iter().any(|warning| warning.contains(expected)),
+            "{:?}",
+            row.warnings
+        );
+        let error = study_of([1.0, 1.01], unit).run().unwrap_err().to_string();
+        assert!(error.contains("where its Dirichlet value is"), "{unit}: {error}");
+    }
 }

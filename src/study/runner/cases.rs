@@ -23,6 +23,8 @@ impl<'a, const D: usize> Study<'a, D> {
                     fit: self.fit.clone(),
                     solvers: vec![solver.clone()],
                     quadrature: self.quadrature,
+                    has_cold_start: self.has_cold_start,
+                    tolerance: self.tolerance,
                     ..Self::new(self.scene.clone())
                 }));
             }

@@ -23,6 +23,10 @@ impl<const D: usize> Study<'_, D> {
     }
     fn judge_values(&self, values: &[f64], constants: Option<&[f64]>) -> Result<Row, Error> {
         self.check_for(1)?;
+        if self.levels.is_empty() {
+            let allowed = "the level of the mesh that the values belong to";
+            return Err(Error::parameter("levels", "none", allowed));
+        }
         let (entry, level) = (&self.entries[0], self.first_level());
         let hierarchies = self.hierarchies(None)?;
         let on = |h| NestedIteration::new(&entry.problem, h).quadrature(self.quadrature);

@@ -118,6 +118,8 @@ impl<const D: usize> Study<'_, D> {
             ("reference", self.reference.is_some()),
             ("history", self.keeps_history),
             ("tolerance", self.tolerance.is_some()),
+            ("repeat", self.repeat > 1),
+            ("cold start", self.has_cold_start),
             ("values", !self.scene.problem.values.is_empty()),
         ];
         match asked.iter().find(|(_, is_asked)| *is_asked) {
@@ -125,7 +127,7 @@ impl<const D: usize> Study<'_, D> {
             Some((parameter, _)) => Err(Error::parameter(
                 parameter,
                 "over several processes",
-                "the active set method in `f64` on uniform meshes, with errors against the exact solution, without a history and values by name",
+                "the active set method in `f64` on uniform meshes, with errors against the exact solution, once from coarser levels to rounding, without a history and values by name",
             )),
         }
     }
