@@ -70,7 +70,8 @@ impl DofLocation {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Inequality<T> {
-    /// The matrix `A` on all unknowns, fixed ones included.
+    /// The matrix `A` on all unknowns, fixed ones included; assembled beside a penalised matrix too, for Krylov methods,
+    /// diagonals and parts of the inequality.
     pub matrix: SparseMatrix<T>,
     /// Whether `A` is symmetric, as the scheme declares.
     pub symmetric: bool,

@@ -3,9 +3,9 @@
 //! A [`Discretisation`] joins element, facet form, problem and mesh; the room
 //! [`scheme`](crate::scheme) defines which elements and forms make a scheme. The layout of the
 //! element and the form, not the name of the scheme, select one of two ways to compute the matrix.
-//! Rows of a broken space belong to one cell and are written in place; rows of a space that shares
-//! unknowns are gathered from local matrices. Both ways are parallel, without locks, and give the
-//! same bits for any number of threads.
+//! Rows of a broken space with a form belong to one cell and are written in place (`owned_rows`); all
+//! other rows are gathered from local matrices (`shared_rows`). Both ways are parallel, without locks,
+//! but for forms on shared unknowns, and give the same bits for any number of threads.
 
 mod bodies;
 pub(crate) mod cut_simplices;

@@ -49,14 +49,14 @@ pub struct Trace {
 
 /// A facet term of a bilinear form, written as its integrand.
 ///
-/// The trait is object-safe: the assembler holds a form as `&dyn FacetForm` and calls it once a facet
-/// or less, never once a matrix entry.
+/// The trait is object-safe: the assembler holds a form as `&dyn FacetForm`. On broken elements it calls it
+/// once a facet or less, never once a matrix entry.
 ///
 /// From the one formula come the matrix, the load of Dirichlet data (which enter as the trial trace
 /// `{ jump: u_D, flux: 0 }`: wherever `[u]` stands on a Dirichlet facet, `[u] - u_D` is meant) and
 /// the penalty terms of the norm (the formula at traces without flux).
 pub trait FacetForm<const D: usize>: Send + Sync {
-    /// Whether there is a form at all, by default true. Without one, facets are not even built.
+    /// Whether there is a form at all, by default true.
     fn couples(&self) -> bool {
         true
     }

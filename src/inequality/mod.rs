@@ -29,7 +29,7 @@
 //! | `solution`, `outcome`, `stage` | [`Solution`], [`Outcome`], [`Stage`], [`StageRun`]: the result of a solver |
 //!
 //! Every solver first asks `recession` whether bounds alone hold a body: then the load decides whether a solution exists,
-//! bounds that it does not press are left out at first, and the solver may run twice. [`ActiveSet`] runs other methods
+//! bounds that it does not press are left out at first, and the solver may run again. [`ActiveSet`] runs other methods
 //! where its active set stagnates: `active_set/ladder` is that order; [`Solution::stages`] contains the methods that ran.
 //! The certificate decides [`Outcome::Converged`] or [`Outcome::Stalled`] when the active set is final.
 

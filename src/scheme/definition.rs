@@ -169,7 +169,8 @@ impl<'a, const D: usize> Discretisation<'a, D> {
     /// facets only if the scheme needs them.
     ///
     /// # Errors
-    /// [`Error::CoefficientNotPositive`], [`Error::NothingToBound`], [`Error::UnsupportedForm`],
+    /// [`Error::CoefficientNotPositive`], [`Error::NothingToBound`], [`Error::UnsupportedForm`], [`Error::Quadrature`],
+    /// [`Error::DataNotFinite`], those of names that the mesh does not have or a problem gives twice, and
     /// [`Error::Parameter`] for a penalty factor that makes no penalty, and for a matrix with too many entries.
     pub fn new(
         scheme: &dyn Scheme<D>,

@@ -57,7 +57,7 @@ impl<'a, const D: usize> Discretisation<'a, D> {
     pub fn problem(&self) -> &'a Problem<D> {
         self.space.problem
     }
-    /// Whether each row belongs to one cell, which then writes it in place.
+    /// Whether a form acts on a broken space: each row belongs to one cell, which writes it in place.
     pub(crate) fn owns_rows(&self) -> bool {
         self.form.couples() && self.space.broken
     }

@@ -1,4 +1,4 @@
-//! Rows of spaces that share unknowns.
+//! Rows of spaces that share unknowns, and of broken ones without a form on facets.
 //!
 //! Without a form on facets each cell adds its matrix to the positions in its rows that were noted
 //! when the pattern was made: see [`pattern`](pattern::pattern) and [`fill`](fill::fill). With one, which

@@ -17,14 +17,14 @@ const ROUNDING: f64 = 128.0;
 pub(crate) struct Iterate<'a, T: Real> {
     pub inequality: &'a Inequality<T>,
     pub values: Vec<T>,
-    /// The jump multipliers, if a linear solver has them as unknowns
+    /// The jump multipliers, if a linear solver has determined them beside the values
     /// ([`PenalisedMatrix`](crate::algebra::PenalisedMatrix)); else empty.
     pub jump_multipliers: Vec<T>,
     pub states: Vec<Contact>,
     /// Whether an unknown is eliminated from the linear system: fixed, active, or one that another part of the mesh
     /// owns, whose state is known there alone.
     pub eliminated: Vec<bool>,
-    /// `b - A u`.
+    /// `b - A u`; with jump multipliers `p`, `c - K u - M^T p`.
     pub residual: Vec<f64>,
     /// Whether `residual` is that of the present values.
     pub residual_is_current: bool,

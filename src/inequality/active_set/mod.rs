@@ -12,7 +12,7 @@
 //! | `local_inequality` | the inequality near unknowns whose states keep changing |
 //! | `progress` | cycles and stagnation of the active set, accuracy of linear solutions |
 //! | `linear_solver` | the trait of solvers of the linear systems |
-//! | `direct_solver` | factors of the assembled matrix, static condensation of a penalised one |
+//! | `direct_solver` | systems of active sets by factors |
 //! | `preconditioned_solver` | preconditioned Krylov methods |
 //! | `contact_state` | the contact states that a bound admits, the value that a state prescribes |
 

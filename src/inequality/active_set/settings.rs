@@ -17,7 +17,7 @@ use crate::linear::LinearMethod;
 /// proportional to sixteen times machine epsilon:
 ///
 /// * A bound counts as violated if the violation exceeds this product times the largest absolute
-///   value of all unknowns. An unknown wrongly left inactive changes the solution by its violation
+///   value of all unknowns, or of the admissible values nearest to them. An unknown wrongly left inactive changes the solution by its violation
 ///   at most, so that a global scale is safe.
 /// * The sign of a multiplier counts as wrong if its size exceeds this product times the sum of the absolute values of
 ///   the terms of its residual (machine epsilon of the scalar for terms of inactive unknowns, of `f64` for terms of

@@ -19,7 +19,7 @@ use crate::real::{Precision, Real, maximum};
 
 /// Relative, dimensionless violations of the complementarity conditions of an [`Inequality`].
 ///
-/// Notation: `r = A u - b`; `d` the diagonal of `A`; `E` the energy norm of the solution, with its
+/// Notation: `r = A u - b`, the residual with the other sign; `d` the diagonal of `A`; `E` the energy norm of the solution, with its
 /// Dirichlet data subtracted where they are imposed weakly
 /// ([`DirichletEnergy`](crate::algebra::DirichletEnergy)); `v_i` the admissible value nearest to
 /// `u_i`; `U` the largest of all `|u_i|` and `|v_i|`; the gap the distance of `u_i` from the nearer
