@@ -118,7 +118,9 @@ impl Preconditioner<f64> for WithGhosts<'_> {
         distribution.update_flags(&mut fixed);
         let set = self.inner.set_fixed(&fixed);
         // one error in all parts, so that all take the same way on
+        let is_too_large = any_part(distribution, set == Err(FactorError::OutOfMemory));
         match any_part(distribution, set.is_err()) {
+            true if is_too_large => Err(FactorError::OutOfMemory),
             true => Err(FactorError::NotPositive),
             false => Ok(()),
         }

@@ -45,6 +45,8 @@ impl<const D: usize> Study<'_, D> {
         };
         let mut nested: Vec<NestedIteration<'_, D>> = hierarchies.iter().map(on_parts).collect();
         let mut rows = Vec::new();
+        #[cfg(feature = "report")]
+        let mut unwritten = None;
         for entry in &self.entries {
             for &level in &self.levels {
                 (self.observer)(Progress::Started(&self.scene.name, &entry.label, level));
@@ -63,9 +65,14 @@ impl<const D: usize> Study<'_, D> {
                 agree(self.finish(row, &mut rows).map(|_| ()), &*process.exchange)?;
                 #[cfg(feature = "report")]
                 if let Ok(solved) = &solved {
-                    self.write_on_parts(entry, level, solved)?;
+                    let written = self.write_on_parts(entry, level, solved);
+                    unwritten = unwritten.or(written.err());
                 }
             }
+        }
+        #[cfg(feature = "report")]
+        if let Some(error) = unwritten {
+            return Err(error);
         }
         Ok(self.report(rows))
     }

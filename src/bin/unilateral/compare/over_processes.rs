@@ -4,11 +4,12 @@
 
 use unilateral::distributed::Process;
 use unilateral::distributed::petsc::Processes;
+use unilateral::error::Error;
 use unilateral::in_its_dimension;
 use unilateral::processes::{ExchangeError, agree};
-use unilateral::scenes::Scene;
+use unilateral::scenes::{AnyScene, Scene};
 use unilateral::scheme::NamedScheme;
-use unilateral::study::{Journal, Report, Row};
+use unilateral::study::{Journal, Report, Row, Study};
 
 use super::options::{Options, check_numbers};
 use super::prepare::study;
@@ -48,8 +49,10 @@ fn run_process(options: &Options, process: &Process) -> Request<bool> {
         check_output(options, &inputs)?;
         Journal::create(&options.out, program.clone()).map_err(|e| e.to_string())
     };
-    let journal = agreed(is_first.then(new_journal).transpose(), process)?;
     let all = AllRuns { options, schemes: &schemes, process, watcher: &watcher };
+    // nothing runs and nothing is replaced before all is checked
+    let scenes = agreed(all.fitting(scenes), process)?;
+    let journal = agreed(is_first.then(new_journal).transpose(), process)?;
     let (mut rows, mut messages) = (Vec::new(), Vec::new());
     let journal = journal.as_ref();
     let mut add = |found: Result<Vec<Row>, String>| match found {
@@ -60,7 +63,11 @@ fn run_process(options: &Options, process: &Process) -> Request<bool> {
         add(in_its_dimension!(scene, |scene| all.run(scene, journal)));
     }
     watcher.clear();
-    let report = Report::new(program, rows);
+    // a scene that ended by an error has rows in the journal
+    let report = match journal {
+        Some(journal) if !messages.is_empty() => journal.report(),
+        _ => Report::new(program, rows),
+    };
     if is_first {
         messages.iter().for_each(|text| complain(text));
     }
@@ -110,14 +117,43 @@ struct AllRuns<'r> {
     watcher: &'r Watcher,
 }
 
-impl AllRuns<'_> {
+impl<'r> AllRuns<'r> {
+    /// The scenes without those that do not fit the mesh and were not asked for by name.
+    fn fitting(&self, scenes: Vec<AnyScene>) -> Request<Vec<AnyScene>> {
+        let mut fitting = Vec::new();
+        for scene in scenes {
+            if in_its_dimension!(scene.clone(), |scene| self.fits(scene))? {
+                fitting.push(scene);
+            }
+        }
+        match fitting.is_empty() {
+            true => Err("no scene fits the mesh; name one to be told why".to_owned()),
+            false => Ok(fitting),
+        }
+    }
+
+    fn fits<const D: usize>(&self, scene: Scene<D>) -> Request<bool> {
+        let place = self.options.asked.place(&scene.name);
+        match self.study(scene).check_on_parts(self.process) {
+            Err(Error::UnfitMesh(_) | Error::UnknownGroup(_))
+                if !self.options.asked.scenes_are_named() =>
+            {
+                Ok(false)
+            }
+            other => other.map(|()| true).map_err(|e| format!("{place}: {e}")),
+        }
+    }
+
+    fn study<const D: usize>(&self, scene: Scene<D>) -> Study<'r, D> {
+        study(scene, self.options, self.schemes, self.watcher)
+    }
+
     /// The rows of one scene or problem.
     fn run<const D: usize>(&self, scene: Scene<D>, journal: Option<&Journal>) -> Request<Vec<Row>> {
-        let Self { options, schemes, process, watcher } = *self;
+        let Self { options, process, watcher, .. } = *self;
         let place = options.asked.place(&scene.name);
         let has_mesh = scene.domain.is_mesh();
-        let mut study = study(scene, options, schemes, watcher);
-        study.check_on_parts(process).map_err(|e| format!("{place}: {e}"))?;
+        let mut study = self.study(scene);
         watcher.expect(D, has_mesh, study.keys().iter().map(|key| key.level));
         if let Some(journal) = journal {
             study = study.journal(journal);
