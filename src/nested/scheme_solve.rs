@@ -24,9 +24,15 @@ use crate::scheme::Scheme;
 /// means of a function of another scheme (problem stretched of the tests, `cr`).
 const STRETCHED: f64 = 16.0;
 
-/// Tolerances of a sequence of solves, relative to the energy norm of the solution. The sequence ends as soon as the
-/// algebraic error is at most the wanted share of the error bound; the last solve has no tolerance.
-const TOLERANCES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
+/// The tolerance of the first of a sequence of solves, relative to the energy norm of the solution: it tells which one leaves
+/// the wanted share of the error bound.
+const FIRST_TOLERANCE: f64 = 1e-2;
+
+/// Of that tolerance half is taken, and at most a tenth of the one before. Below the least one the last solve of the sequence
+/// has none.
+const SAFETY: f64 = 0.5;
+const LARGEST_STEP: f64 = 0.1;
+const LEAST_TOLERANCE: f64 = 1e-8;
 
 impl<'a, const D: usize> NestedIteration<'a, D> {
     /// A scheme on a mesh: [`NestedIteration::repeat`] times, with the smallest time.
@@ -213,8 +219,8 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         Ok((solution, seconds))
     }
 
-    /// Solves a system, each time from the solution before, until the bound on the algebraic error is at most a share of
-    /// that on the error. Counts are those of all solves, seconds those of all solves and of the bounds between them.
+    /// Solves a system, each time from the solution before, until the algebraic error is at most a share of the error bound
+    /// ([`Solved::algebraic_share`]). Counts are those of all solves, seconds those of all solves and of the bounds between them.
     fn solve_to_share(
         &self,
         (mut system, hierarchy): (System<'a, D>, Option<(&'a Hierarchy<D>, usize)>),
@@ -224,8 +230,8 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
     ) -> Result<(Solved<'a, D>, f64), Error> {
         let (mut outer, mut linear, mut systems, mut stages) = (0, 0, Some(0), Vec::new());
         let mut seconds = 0.0;
-        for tolerance in TOLERANCES.map(Some).into_iter().chain([None]) {
-            guess.energy_tolerance = tolerance;
+        guess.energy_tolerance = Some(FIRST_TOLERANCE);
+        loop {
             let (mut solution, of_solve) = self.run(&system, &guess)?;
             seconds += of_solve;
             (outer, linear) = (outer + solution.outer, linear + solution.linear);
@@ -235,8 +241,10 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
             let mut solved = Solved::new(system, solution, hierarchy);
             solved.conforming = conforming.to_vec();
             let clock = Instant::now();
-            let is_small = is_found && solved.algebraic_share().is_some_and(|own| own <= share);
-            if is_small || tolerance.is_none() {
+            let left = solved.solution.algebraic_bound.filter(|_| is_found);
+            let own = left.and_then(|_| solved.algebraic_share());
+            let is_small = own.is_some_and(|own| own <= share);
+            if is_small || guess.energy_tolerance.is_none() {
                 let solution = &mut solved.solution;
                 (solution.outer, solution.linear) = (outer, linear);
                 (solution.systems, solution.stages) = (systems, stages);
@@ -246,6 +254,10 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
                 return Ok((solved, seconds));
             }
             seconds += clock.elapsed().as_secs_f64();
+            // the share is proportional to what the solver leaves
+            let wanted = left.zip(own).map(|(left, own)| left * SAFETY * share / own);
+            let next = wanted.zip(guess.energy_tolerance).map(|(x, t)| x.min(LARGEST_STEP * t));
+            guess.energy_tolerance = next.filter(|next| *next >= LEAST_TOLERANCE);
             let (before, values, contact) = solved.into_system();
             system = before;
             if is_found {
@@ -253,6 +265,5 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
                 system.inequality.start = Start::Contact(contact);
             }
         }
-        unreachable!("the last solve has no tolerance")
     }
 }

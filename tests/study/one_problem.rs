@@ -269,7 +269,8 @@ fn values_that_are_not_finite_are_refused() {
     }
 }
 
-/// A solve that ends at a share of the error bound takes fewer iterations, and its error differs by no more.
+/// A solve that ends at a share of the error bound takes fewer iterations, but for those by which a matrix that is not
+/// symmetric gets its bound, once a solve; its error differs by no more, and its bound is hardly larger.
 #[test]
 fn solves_end_at_a_share_of_the_error_bound() {
     const SHARE: f64 = 0.1;
@@ -289,10 +290,13 @@ fn solves_end_at_a_share_of_the_error_bound() {
         let [to_rounding, to_share] = [None, Some(SHARE)].map(solve);
         assert!(to_share.converged(), "{}: {}", scheme.name(), to_share.outcome());
         let [all, few] = [&to_rounding, &to_share].map(|solved| solved.solution().linear);
-        assert!(few < all, "{}: {few} of {all} iterations", scheme.name());
+        let is_symmetric = to_share.inequality().symmetric;
+        assert!(few < all || !is_symmetric, "{}: {few} of {all} iterations", scheme.name());
         let error = |solved: &Solved<'_, 2>| solved.errors().unwrap().broken_energy.unwrap();
         let difference = (error(&to_rounding) - error(&to_share)).abs();
         let bound = to_share.bound().unwrap().discrete;
         assert!(difference <= SHARE * bound, "{}: {difference:e}, {bound:e}", scheme.name());
+        let whole = to_rounding.bound().unwrap().discrete;
+        assert!(bound <= (1.0 + 2.0 * SHARE) * whole, "{}: {bound:e}, {whole:e}", scheme.name());
     }
 }

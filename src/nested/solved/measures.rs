@@ -142,10 +142,12 @@ impl<const D: usize> Solved<'_, D> {
         }
         Ok(once(&self.bound, || (pair, bound, clock.elapsed().as_secs_f64())))
     }
-    /// The bound on the algebraic error over that on the error; none without one of them.
+    /// The bound on the algebraic error, or what the solver adds to the error bound if that is more, over the error bound
+    /// without it; none without one of these bounds.
     pub(in crate::nested) fn algebraic_share(&self) -> Option<f64> {
-        let (_, bound, _) = self.pair_and_bound().ok()?;
-        Some(self.solution.algebraic_bound? * self.energy_norm / bound.discrete)
+        let (_, ErrorBound { discrete, terms, .. }, _) = self.pair_and_bound().ok()?;
+        let own = self.solution.algebraic_bound? * self.energy_norm / discrete;
+        Some(own.max(terms.algebra.sqrt()) / (1.0 - terms.algebra).max(0.0).sqrt())
     }
     /// Seconds of the bound; none if it is not known, or not yet.
     pub(crate) fn bound_seconds(&self) -> Option<f64> {

@@ -118,8 +118,8 @@ impl<'a, const D: usize> Study<'a, D> {
         self.has_cold_start = has_cold_start;
         self
     }
-    /// Makes solves end where the bound on their algebraic error is at most this share of the error bound, in place of
-    /// the limit of the certificate: see [`NestedIteration::tolerance`](crate::nested::NestedIteration::tolerance). Rows
+    /// Makes solves end where the bound on their algebraic error is at most this share of the rest of the error bound, in
+    /// place of the limit of the certificate: see [`NestedIteration::tolerance`](crate::nested::NestedIteration::tolerance). Rows
     /// say the share; a reference is solved to rounding.
     ///
     /// ```
