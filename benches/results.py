@@ -3,7 +3,7 @@
     cargo build --release && python3 benches/results.py comparison
 
 Pages: adaptive, assembly, bernstein, bound, comparison, orders, serial, stability, time_to_error. PROGRAM names another
-build of the program, COMMIT what it was built from. Python 3 alone is needed.
+build of the program, COMMIT what it was built from, NOTE what else the machine did. Python 3 alone is needed.
 """
 
 import csv
@@ -60,7 +60,8 @@ def head(page, title, *commands):
     commit = os.environ.get("COMMIT") or output("git", "rev-parse", "--short", "HEAD").strip()
     lines = [("command", f"`{command}`") for command in commands]
     lines.append(("date", datetime.date.today().isoformat()))
-    lines.append(("machine", f"{cpu}, {os.cpu_count()} cores"))
+    note = os.environ.get("NOTE", "")
+    lines.append(("machine", f"{cpu}, {os.cpu_count()} cores{note and ', ' + note}"))
     lines.append(("commit", f"{commit}, version {output(PROGRAM, '--version').split()[1]}"))
     made = f"Written by `python3 benches/results.py {page}`, not edited by hand."
     return f"# {title}\n\n{made}\n\n" + table(["", ""], lines, 2)
@@ -251,6 +252,8 @@ def adaptive():
         for row in rows(f"adaptive-{k}"):
             series.setdefault((row["scene"], row["label"]), []).append(row)
         for (scene, label), steps in series.items():
+            end = steps[-1]["status"]
+            steps = [row for row in steps if row["status"] == "converged"]
             last = steps[-1]
             of_bound = slope(steps, lambda row: row["bound"]["discrete"])
             of_error = slope(steps, lambda row: row["error"]["broken_energy"])
@@ -258,7 +261,7 @@ def adaptive():
             stages = [stage["stage"] for stage in last["iterations"]["stages"]]
             star = "*" if "interior-point" in stages else ""
             lines.append(
-                [scene, f"`{label}`", last["level"], last["unknowns"], f"{of_bound:.2f}, {of_error:.2f}",
+                [scene, f"`{label}`", last["level"], last["unknowns"] if end == "converged" else f"{last['unknowns']}, then {end}", f"{of_bound:.2f}, {of_error:.2f}",
                  f"{min(effectivity):.2f} to {max(effectivity):.2f}",
                  f"{last['iterations']['outer']}, {last['iterations']['linear']}{star}"])
     cells = {}
@@ -273,12 +276,12 @@ def adaptive():
                         seconds = row["seconds"] or row["seconds_bound"]
                         cells[row["scene"], row["label"], kind] = f"{sign}{float(seconds):.2g}"
     text = head("adaptive", "Meshes that follow the error", *commands, *by_clock,
-                "the same with `--adaptive steps=30,unknowns=1e5` in place of levels")
+                "the last two with --adaptive steps=30,unknowns=1e5 in place of levels")
     text += """
 ## Steps
 
 Slopes are those of bound and error in the broken energy norm against unknowns, over the last half of the steps. Active
-sets and Krylov steps are those of the last step. A star marks solves that the interior point method ended.
+sets and Krylov steps are those of the last step that converged. A star marks solves that the interior point method ended.
 
 """
     text += table(
