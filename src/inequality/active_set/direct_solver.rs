@@ -40,7 +40,7 @@ impl<'a, T: Real> DirectSolver<'a, T> {
         Self { inequality, system, is_inactive: Vec::new(), factors: None }
     }
 
-    /// The matrix for solves with factors.
+    /// The systems of the inequality.
     pub fn system(&self) -> &DirectSystem<'a, T> {
         &self.system
     }
@@ -50,8 +50,8 @@ impl<'a, T: Real> DirectSolver<'a, T> {
     /// square negative.
     ///
     /// The norm is the root of the energy of one more correction. The bound is proven but for rounding in the factors. For
-    /// a penalised matrix the energy is that of a correction of values and jump multipliers
-    /// together, in which the rounding of single values has no weight.
+    /// a penalised matrix the energy is that of a correction of values and jump multipliers together, in which the
+    /// rounding of single values has no weight.
     pub fn error_bound(&self, iterate: &mut Iterate<'_, T>) -> Option<f64> {
         if !self.inequality.symmetric {
             return None;
