@@ -25,8 +25,8 @@ use crate::scheme::Scheme;
 const STRETCHED: f64 = 16.0;
 
 /// The tolerance of a solve relative to the energy norm of the solution, for the share of the error bound that it may leave.
-/// It does for errors of about a hundredth, and a second solve begins anew with its preconditioner.
-const FIRST_TOLERANCE: f64 = 1e-4;
+/// It does for errors of about a thousandth; a second solve would begin anew with its preconditioner.
+const FIRST_TOLERANCE: f64 = 1e-5;
 
 /// If it leaves more, half of the tolerance that would have left the share is next, and at most a tenth of the one before.
 /// Below the least one the last solve has none.
