@@ -232,6 +232,40 @@ def slope(rows, key):
     return math.log(key(last) / key(first)) / math.log(last["unknowns"] / first["unknowns"])
 
 
+def steps_of(folder):
+    """The lines of the adaptive series of a run: rates, quotients of bounds, and the last step that converged."""
+    series, lines = {}, []
+    for row in rows(folder):
+        series.setdefault((row["scene"], row["label"]), []).append(row)
+    for (scene, label), steps in series.items():
+        end = steps[-1]["status"]
+        steps = [row for row in steps if row["status"] == "converged"]
+        last = steps[-1]
+        unknowns = f"{last['unknowns']}" + ("" if end == "converged" else f", then {end}")
+        of_bound = slope(steps, lambda row: row["bound"]["discrete"])
+        of_error = slope(steps, lambda row: row["error"]["broken_energy"])
+        effectivity = [row["bound"]["effectivity"] for row in steps]
+        stages = [stage["stage"] for stage in last["iterations"]["stages"]]
+        star = "*" if "interior-point" in stages else ""
+        lines.append(
+            [scene, f"`{label}`", last["level"], unknowns, f"{of_bound:.2f}, {of_error:.2f}",
+             f"{min(effectivity):.2f} to {max(effectivity):.2f}",
+             f"{last['iterations']['outer']}, {last['iterations']['linear']}{star}"])
+    return lines
+
+
+def seconds_to_bounds(folder, goals):
+    """Seconds to the error bound that is the goal of a scene, by scene and label."""
+    found = {}
+    with open(OUT / folder / "reach.csv") as file:
+        for row in csv.DictReader(file):
+            if row["norm"] == "bound" and float(row["error"]) == goals[row["scene"]]:
+                sign = {"missed": "> ", "undercut": "< "}.get(row["standing"], "")
+                seconds = row["seconds"] or row["seconds_bound"]
+                found[row["scene"], row["label"]] = f"{sign}{float(seconds):.2g}"
+    return found
+
+
 def adaptive():
     linears = "p1,cr,sipg,wopsip,wopsip:facet-means"
     commands = [
@@ -245,36 +279,15 @@ def adaptive():
         f"{clocked} --scene lshape-2d,ball-2d,signorini-two-2d,hertz-2d --levels 8,16,32,64,128",
         f"{clocked} --scene signorini-harmonic-3d --levels 2,4,8,16",
     ]
-    lines = []
+    lines, uniform, followed = [], {}, {}
     for k, command in enumerate(commands):
         run(command, f"adaptive-{k}")
-        series = {}
-        for row in rows(f"adaptive-{k}"):
-            series.setdefault((row["scene"], row["label"]), []).append(row)
-        for (scene, label), steps in series.items():
-            end = steps[-1]["status"]
-            steps = [row for row in steps if row["status"] == "converged"]
-            last = steps[-1]
-            of_bound = slope(steps, lambda row: row["bound"]["discrete"])
-            of_error = slope(steps, lambda row: row["error"]["broken_energy"])
-            effectivity = [row["bound"]["effectivity"] for row in steps]
-            stages = [stage["stage"] for stage in last["iterations"]["stages"]]
-            star = "*" if "interior-point" in stages else ""
-            lines.append(
-                [scene, f"`{label}`", last["level"], last["unknowns"] if end == "converged" else f"{last['unknowns']}, then {end}", f"{of_bound:.2f}, {of_error:.2f}",
-                 f"{min(effectivity):.2f} to {max(effectivity):.2f}",
-                 f"{last['iterations']['outer']}, {last['iterations']['linear']}{star}"])
-    cells = {}
+        lines += steps_of(f"adaptive-{k}")
     for k, command in enumerate(by_clock):
         run(command, f"adaptive-uniform-{k}")
         run(re.sub("--levels .*", "--adaptive steps=30,unknowns=1e5", command), f"adaptive-clock-{k}")
-        for kind in ["uniform", "clock"]:
-            with open(OUT / f"adaptive-{kind}-{k}/reach.csv") as file:
-                for row in csv.DictReader(file):
-                    if row["norm"] == "bound" and float(row["error"]) == goals[row["scene"]]:
-                        sign = {"missed": "> ", "undercut": "< "}.get(row["standing"], "")
-                        seconds = row["seconds"] or row["seconds_bound"]
-                        cells[row["scene"], row["label"], kind] = f"{sign}{float(seconds):.2g}"
+        uniform |= seconds_to_bounds(f"adaptive-uniform-{k}", goals)
+        followed |= seconds_to_bounds(f"adaptive-clock-{k}", goals)
     text = head("adaptive", "Meshes that follow the error", *commands, *by_clock,
                 "the last two with --adaptive steps=30,unknowns=1e5 in place of levels")
     text += """
@@ -293,9 +306,9 @@ Seconds to an error bound on uniform / adaptive meshes. `> t` where the finest m
 `< t` where the coarsest one undercuts it.
 
 """
-    labels = list(dict.fromkeys(label for _, label, _ in cells))
-    cell = lambda *key: " / ".join(cells.get((*key, kind), "-") for kind in ["uniform", "clock"])
-    lines = [[f"`{label}`", *(cell(scene, label) for scene in goals)] for label in labels]
+    labels = list(dict.fromkeys(label for _, label in uniform))
+    both = lambda *key: " / ".join(of.get(key, "-") for of in [uniform, followed])
+    lines = [[f"`{label}`", *(both(scene, label) for scene in goals)] for label in labels]
     return text + table(["scheme", *(f"{scene}, {goal:.0e}" for scene, goal in goals.items())], lines)
 
 

@@ -1,9 +1,9 @@
 //! Algebraic data: sparse and dense matrices, and the variational inequality that every solver and
 //! exporter takes. Independent of mesh, dimension and scheme.
 //!
-//! `matrix`: compressed sparse rows. `galerkin_product`: `P^T A P`. `penalised_matrix`: `K + M^T S M`, with `jumps` for `M` and the
-//! `mean_jumps` of discontinuous linear functions. `side_penalties`: `M^T S M` of
-//! discontinuous linear functions. `dense`: small dense matrices.
+//! `matrix`: compressed sparse rows. `galerkin_product`: `P^T A P`. `penalised_matrix`: `K + M^T S M`; `jumps`: the matrix
+//! `M`; `mean_jumps`: the facets of `M` for discontinuous linear functions. `side_penalties`: `M^T S M` of these.
+//! `dense`: small dense matrices.
 //! `dirichlet_energy`: the terms of an energy that weak Dirichlet data determine.
 //! `distribution`: unknowns in several processes. `free_body`: bodies that bounds alone hold. `bound`: bounds of an
 //! unknown. `kink`: kinks of the convex functions of unknowns. `inequality`: locations of unknowns and the inequality.

@@ -140,9 +140,9 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
         self
     }
 
-    /// Makes solves of schemes end where the bound on their algebraic error, and what they add to the
-    /// [bound](Solved::bound) on the error, are at most this share of the rest of that bound, in place of the limit of the
-    /// certificate; on whole meshes. A solve without a bound is one to rounding.
+    /// Makes solves of schemes end where two numbers are at most this share of the [error bound](Solved::bound) without the
+    /// term of the solver: the bound on the algebraic error, and that term. This takes the place of the limit of the
+    /// certificate, on whole meshes. A solve without an error bound is one to rounding.
     #[must_use]
     pub fn tolerance(mut self, share: f64) -> Self {
         self.tolerance = Some(share);

@@ -95,8 +95,8 @@ impl<'a, const D: usize> NestedIteration<'a, D> {
             Some(_) => None,
         };
         let is_p1 = scheme.is_conforming_linear(system.mesh());
-        let is_stretched = scheme.degree() == 1 && system.mesh().largest_aspect() > STRETCHED;
-        let conforming = match is_stretched && !is_p1 && system.part().is_none() {
+        let has_other_linears = !is_p1 && scheme.degree() == 1 && system.part().is_none();
+        let conforming = match has_other_linears && system.mesh().largest_aspect() > STRETCHED {
             true => self.conforming(position, start.as_deref())?,
             false => Vec::new(),
         };

@@ -155,7 +155,7 @@ fn first_failure<const D: usize>(scene: &Scene<D>, mesh: &Mesh<D>) -> Option<Str
     }
     let largest = |k: usize| found.iter().map(|(.., sizes)| sizes[k]).fold(0.0, f64::max);
     let allowed = [ROUNDED * largest(0), ROUNDED * largest(1)];
-    // both are not negative, and one vanishes; false for numbers that are not finite
+    // opening and pressure are not negative, and one of them vanishes; false for numbers that are not finite
     let holds = |[opening, pressure]: [f64; 2]| {
         opening >= -allowed[0]
             && pressure >= -allowed[1]

@@ -1,6 +1,7 @@
 //! The rows of one cell: its stiffness, and on each facet the products of moments.
 //!
-//! Sums are made a row of a block at a time, in registers, and each entry is written once; products of lifts are added after that.
+//! Sums are made a row of a block at a time, in registers, and each entry is written once; products of lifts are added
+//! after that.
 
 use super::rows_by_cell::for_each_cell;
 use super::{Coupled, Filling};

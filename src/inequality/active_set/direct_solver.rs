@@ -12,7 +12,7 @@ use crate::real::Real;
 /// digits and more in `f32` if a single step suffices (a warm start).
 const CORRECTIONS: usize = 2;
 
-/// Largest number of corrections of values and jump multipliers together.
+/// Largest number of corrections of values together with jump multipliers for one active set.
 const MAX_CORRECTIONS: usize = 12;
 
 /// A correction counts as rounding if its largest entry is at most this multiple of machine epsilon times the largest
@@ -57,8 +57,8 @@ impl<'a, T: Real> DirectSolver<'a, T> {
             return None;
         }
         iterate.project_onto_bounds();
-        iterate.compute_residual_with_jump_multipliers();
         let mut correction = self.residual(iterate);
+        iterate.residual.clone_from(&correction.values);
         let squared = self.system.solve(self.factors.as_ref()?, &self.is_inactive, &mut correction);
         let norm = (squared >= 0.0).then(|| squared.sqrt());
         let Iterate { values, residual, diagonal, energy_norm, eliminated: present, .. } =

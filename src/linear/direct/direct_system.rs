@@ -19,9 +19,9 @@ pub(crate) struct MixedVector {
 
 /// The factors of a matrix on its free unknowns.
 pub(crate) enum SystemFactors<T> {
-    /// Of the assembled matrix.
+    /// The factors of the assembled matrix.
     Assembled(Factors<T>),
-    /// Of a penalised matrix, by static condensation.
+    /// The factors of a penalised matrix, by static condensation.
     Condensed(Box<CondensedFactors<T>>),
 }
 

@@ -43,7 +43,7 @@ pub(crate) struct StaticCondensation<'a, T> {
     means: Vec<u32>,
     /// The lower triangle of the Schur complement on facet means, all values zero.
     pattern: SparseMatrix<T>,
-    /// The pattern of its factor, after the first factorisation.
+    /// The pattern of the factor of the Schur complement, after the first factorisation.
     symbolic: OnceLock<SymbolicFactor>,
 }
 

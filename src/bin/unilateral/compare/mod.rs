@@ -36,6 +36,9 @@ use unilateral::study::{Journal, Program, Report, Row, RowKey};
 /// The label of which the verdicts of rounds speak by default.
 const SUBJECT: &str = "wopsip";
 
+/// The message where scenes that nobody named do not fit the mesh.
+const NO_SCENE_FITS: &str = "no scene fits the mesh; name one to be told why";
+
 /// Whether every row converged.
 pub fn run(options: &Options) -> Request<bool> {
     if options.list {
@@ -145,7 +148,7 @@ impl Chosen {
             runs.extend(run?);
         }
         if runs.is_empty() {
-            return Err("no scene fits the mesh; name one to be told why".to_owned());
+            return Err(NO_SCENE_FITS.to_owned());
         }
         let program = program(options, &files);
         let contents: Vec<String> = files.into_iter().map(|(_, fingerprint)| fingerprint).collect();

@@ -4,7 +4,6 @@
 
 use unilateral::distributed::Process;
 use unilateral::distributed::petsc::Processes;
-use unilateral::error::Error;
 use unilateral::in_its_dimension;
 use unilateral::processes::{ExchangeError, agree};
 use unilateral::scenes::{AnyScene, Scene};
@@ -12,9 +11,9 @@ use unilateral::scheme::NamedScheme;
 use unilateral::study::{Journal, Report, Row, Study};
 
 use super::options::{Options, check_numbers};
-use super::prepare::study;
+use super::prepare::{fits, study};
 use super::watcher::Watcher;
-use super::{Chosen, check_output, processes_of_job, program, write_all};
+use super::{Chosen, NO_SCENE_FITS, check_output, processes_of_job, program, write_all};
 use crate::shared::{Request, complain, use_threads};
 
 /// Whether every row converged: the same in all processes. The first one has said what went wrong.
@@ -127,21 +126,14 @@ impl<'r> AllRuns<'r> {
             }
         }
         match fitting.is_empty() {
-            true => Err("no scene fits the mesh; name one to be told why".to_owned()),
+            true => Err(NO_SCENE_FITS.to_owned()),
             false => Ok(fitting),
         }
     }
 
     fn fits<const D: usize>(&self, scene: Scene<D>) -> Request<bool> {
         let place = self.options.asked.place(&scene.name);
-        match self.study(scene).check_on_parts(self.process) {
-            Err(Error::UnfitMesh(_) | Error::UnknownGroup(_))
-                if !self.options.asked.scenes_are_named() =>
-            {
-                Ok(false)
-            }
-            other => other.map(|()| true).map_err(|e| format!("{place}: {e}")),
-        }
+        fits(self.study(scene).check_on_parts(self.process), self.options, &place)
     }
 
     fn study<const D: usize>(&self, scene: Scene<D>) -> Study<'r, D> {

@@ -51,6 +51,16 @@ pub fn study<'a, const D: usize>(
     }
 }
 
+/// Whether a study that has been checked fits the mesh. One that does not is an error if its scene was named.
+pub fn fits(checked: Result<(), Error>, options: &Options, place: &str) -> Request<bool> {
+    match checked {
+        Err(Error::UnfitMesh(_) | Error::UnknownGroup(_)) if !options.asked.scenes_are_named() => {
+            Ok(false)
+        }
+        other => other.map(|()| true).map_err(|e| format!("{place}: {e}")),
+    }
+}
+
 /// Checks a study. Nothing is left of one that does not fit the mesh and was not asked for by name.
 pub fn prepare<'a, const D: usize>(
     scene: Scene<D>,
@@ -95,11 +105,8 @@ pub fn prepare<'a, const D: usize>(
     if let Some((scheme, level)) = &options.asked.reference {
         study = study.named_reference(scheme, *level);
     }
-    match study.check() {
-        Err(Error::UnfitMesh(_) | Error::UnknownGroup(_)) if !options.asked.scenes_are_named() => {
-            return Ok(None);
-        }
-        other => other.map_err(|e| format!("{place}: {e}"))?,
+    if !fits(study.check(), options, &place)? {
+        return Ok(None);
     }
     let keys = study.keys();
     // how many steps a bound takes is not known before
