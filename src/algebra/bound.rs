@@ -42,10 +42,10 @@ impl<T: Real> Bound<T> {
     }
     /// The projection of `x` onto the admissible values.
     pub fn nearest(&self, x: T) -> T {
-        match (*self, self.lower(), self.upper()) {
-            (Bound::Fixed(v), ..) => v,
-            (_, Some(l), _) if x < l => l,
-            (_, _, Some(u)) if x > u => u,
+        match *self {
+            Bound::Fixed(v) => v,
+            Bound::Lower(l) | Bound::Both(l, _) if x < l => l,
+            Bound::Upper(u) | Bound::Both(_, u) if x > u => u,
             _ => x,
         }
     }

@@ -4,6 +4,7 @@ use crate::real::Real;
 
 /// Inverts a symmetric positive definite block in place on its free unknowns, by Gauss-Jordan
 /// elimination; false if a pivot is not positive, with the block destroyed.
+#[inline(always)]
 pub(crate) fn invert_positive_definite<T: Real>(a: &mut [T], size: usize, fixed: &[bool]) -> bool {
     let one = T::lit(1.0);
     for k in (0..size).filter(|&k| !fixed[k]) {

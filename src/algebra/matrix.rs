@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::NO_INDEX;
+use crate::memory::in_large_pages;
 use crate::parallel::grouping::group_by_key;
 use crate::parallel::map_groups;
 use crate::parallel::vectors::{all, collect, concat, for_each_chunk, positions, starts};
@@ -44,6 +45,17 @@ impl<T> SparseMatrix<T> {
     pub fn row(&self, i: usize) -> (&[u32], &[T]) {
         let range = self.row_starts[i] as usize..self.row_starts[i + 1] as usize;
         (&self.columns[range.clone()], &self.values[range])
+    }
+    /// Columns and values of the rows of a range, one row after the other.
+    #[inline(always)]
+    pub(crate) fn rows(&self, range: Range<usize>) -> impl Iterator<Item = (&[u32], &[T])> {
+        let columns = &self.columns[..];
+        // of one length, so that the bounds of a row are checked once
+        let values = &self.values[..columns.len()];
+        self.row_starts[range.start..=range.end].windows(2).map(move |bounds| {
+            let row = bounds[0] as usize..bounds[1] as usize;
+            (&columns[row.clone()], &values[row])
+        })
     }
     /// Columns and mutable values of row `i`.
     pub(crate) fn row_mut(&mut self, i: usize) -> (&[u32], &mut [T]) {
@@ -103,8 +115,7 @@ impl<T: Real> SparseMatrix<T> {
     /// The entry `(A x)_i`.
     #[inline]
     pub fn row_dot(&self, i: usize, x: &[T]) -> T {
-        let (columns, values) = self.row(i);
-        columns.iter().zip(values).fold(T::lit(0.0), |s, (&j, &a)| s + a * x[j as usize])
+        product_of_row(self.row(i), x)
     }
     /// The entry `(A x)_i`, products and sum in `f64`.
     #[inline]
@@ -125,8 +136,8 @@ impl<T: Real> SparseMatrix<T> {
     /// If `b` is shorter than `r`, or `r` is longer than the matrix has rows.
     pub fn residual_of(&self, b: &[T], x: impl Fn(usize) -> f64 + Sync, r: &mut [f64]) {
         for_each_chunk(r, |range, r| {
-            for (r, i) in r.iter_mut().zip(range) {
-                let (columns, values) = self.row(i);
+            for ((r, i), (columns, values)) in r.iter_mut().zip(range.clone()).zip(self.rows(range))
+            {
                 let product = |s: f64, (&j, a): (&u32, &T)| s + a.to_f64() * x(j as usize);
                 *r = b[i].to_f64() - columns.iter().zip(values).fold(0.0, product);
             }
@@ -184,10 +195,19 @@ impl<T: Real> SparseMatrix<T> {
         range: Range<usize>,
         mut add: impl FnMut(usize, &mut Vec<u32>, &mut Vec<T>),
     ) -> Self {
-        let (mut row_starts, mut columns, mut values) = (vec![0], Vec::new(), Vec::new());
-        for row in range {
+        let (mut columns, mut values) = (Vec::new(), Vec::new());
+        let mut row_starts = Vec::with_capacity(range.len() + 1);
+        row_starts.push(0);
+        for row in range.clone() {
             add(row, &mut columns, &mut values);
             row_starts.push(columns.len() as u32);
+            if row == range.start {
+                // most rows have about as many entries as the first one; vectors that grow are copied
+                let expected = columns.len() * range.len();
+                columns.reserve(expected);
+                values.reserve(expected);
+                (columns, values) = (in_large_pages(columns), in_large_pages(values));
+            }
         }
         Self { row_starts, columns, values }
     }
@@ -237,6 +257,12 @@ impl<T: Real> SparseMatrix<T> {
             })
         })
     }
+}
+
+/// The product of a row, columns and values, with a vector.
+#[inline(always)]
+pub(crate) fn product_of_row<T: Real>((columns, values): (&[u32], &[T]), x: &[T]) -> T {
+    columns.iter().zip(values).fold(T::lit(0.0), |s, (&j, &a)| s + a * x[j as usize])
 }
 
 /// Sorts the entries of a row by their columns; generic over the scalar alone, so that the sorting code

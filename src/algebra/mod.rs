@@ -36,7 +36,7 @@ pub use inequality::{DofLocation, Inequality, Start};
 pub use jumps::{JumpSide, JumpTerm, Jumps};
 pub use kink::Kink;
 pub use matrix::SparseMatrix;
-pub(crate) use matrix::sort_by_column;
+pub(crate) use matrix::{product_of_row, sort_by_column};
 pub use mean_jumps::MeanJumps;
 pub use penalised_matrix::PenalisedMatrix;
 pub(crate) use side_penalties::SidePenalties;

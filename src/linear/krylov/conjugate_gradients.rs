@@ -2,7 +2,7 @@
 
 use super::lanczos::LanczosMatrix;
 use super::stopping::{KrylovRun, StopReason, StoppingRule};
-use crate::algebra::{Distribution, SparseMatrix, sum_over_parts};
+use crate::algebra::{Distribution, SparseMatrix, product_of_row, sum_over_parts};
 use crate::linear::precondition::Preconditioner;
 use crate::parallel::vectors::{dot, for_each_chunk, sum_chunks, sum_chunks_of_two, zeros};
 use crate::real::Real;
@@ -96,8 +96,8 @@ impl<'m, T: Real> ConjugateGradients<'m, T> {
         let (matrix, p) = (&self.matrix, &self.p);
         let own = sum_chunks(&mut self.q, 1, |range, q| {
             let mut sum = 0.0;
-            for (i, q) in range.zip(q) {
-                *q = if fixed[i] { T::lit(0.0) } else { matrix.row_dot(i, p) };
+            for ((i, row), q) in range.clone().zip(matrix.rows(range)).zip(q) {
+                *q = if fixed[i] { T::lit(0.0) } else { product_of_row(row, p) };
                 sum += p[i].to_f64() * q.to_f64();
             }
             sum

@@ -33,6 +33,9 @@ use crate::real::Real;
 /// `E` is positive.
 const MARGIN: f64 = 1.1;
 
+/// The first term of a sum: unlike with a positive zero, the addition of the second one takes no instruction.
+const ZERO: f32 = -0.0;
+
 /// The rows of a symmetric matrix, with ascending columns, and a scale: the smoother is that of the matrix divided by it.
 #[derive(Clone, Copy)]
 pub(crate) struct ScaledRows<'m, T> {
@@ -104,21 +107,70 @@ struct ChunkRows<const N: usize> {
     outside: Vec<(u16, u32, Block<N>)>,
 }
 
+/// Where a chunk stores a block of one of its rows.
+enum Place {
+    Diagonal,
+    /// In the strictly lower triangle, with the column relative to the chunk.
+    Lower(u16),
+    /// Outside of the chunk, with the column.
+    Outside(u32),
+}
+
 impl<T: Real> ScaledRows<'_, T> {
-    /// The entries in the rows of a block and the columns of another.
-    fn block<const N: usize>(&self, own: usize, other: usize) -> Block<N> {
-        let mut block = [[0.0; N]; N];
-        for (k, row) in block.iter_mut().enumerate() {
-            let (columns, values) = (self.row)(own * N + k);
-            let first = columns.partition_point(|&j| (j as usize) < other * N);
-            for (&j, a) in columns[first..].iter().zip(&values[first..]) {
-                match row.get_mut(j as usize - other * N) {
-                    Some(entry) => *entry = (a.to_f64() / self.scale) as f32,
-                    None => break,
+    /// The blocks of a row that are asked for, by their columns: first those in which its first row has entries.
+    #[inline(always)]
+    fn read<const N: usize>(
+        &self,
+        own: usize,
+        blocks: &mut Vec<(usize, Block<N>)>,
+        is_asked: impl Fn(usize) -> bool,
+    ) {
+        blocks.clear();
+        for i in 0..N {
+            let (columns, values) = (self.row)(own * N + i);
+            let mut at = 0;
+            for (&j, a) in columns.iter().zip(values) {
+                let (other, j) = (j as usize / N, j as usize % N);
+                if !is_asked(other) {
+                    continue;
                 }
+                if blocks.get(at).is_none_or(|block| block.0 != other) {
+                    // columns ascend, so that only the first row adds blocks if all have the same columns
+                    let known =
+                        if N == 1 { None } else { blocks.iter().position(|b| b.0 == other) };
+                    at = known.unwrap_or(blocks.len());
+                    if known.is_none() {
+                        blocks.push((other, [[0.0; N]; N]));
+                    }
+                }
+                blocks[at].1[i][j] = (a.to_f64() / self.scale) as f32;
             }
         }
-        block
+    }
+
+    /// Visits the blocks that the chunk of the rows `range` stores for one of them, always in the same order.
+    fn visit_stored<const N: usize>(
+        &self,
+        (own, range): (usize, &Range<usize>),
+        [blocks, transposed]: [&mut Vec<(usize, Block<N>)>; 2],
+        mut visit: impl FnMut(Place, Block<N>),
+    ) {
+        self.read(own, blocks, |other| !(own + 1..range.end).contains(&other));
+        for &(other, block) in &*blocks {
+            if other == own {
+                visit(Place::Diagonal, block);
+            } else if range.contains(&other) {
+                visit(Place::Lower((other - range.start) as u16), block);
+            } else if other < own {
+                visit(Place::Outside(other as u32), block);
+            } else {
+                // of two symmetric blocks that in the later row is read, so that both rows store the same
+                self.read(other, transposed, |column| column == own);
+                let block =
+                    transposed.first().map_or(block, |(_, b)| from_fn(|i| from_fn(|j| b[j][i])));
+                visit(Place::Outside(other as u32), block);
+            }
+        }
     }
 }
 
@@ -126,59 +178,55 @@ impl<const N: usize> ChunkRows<N> {
     /// The rows `range` of a matrix.
     fn new<T: Real>(rows: ScaledRows<'_, T>, range: Range<usize>) -> Self {
         let n = range.len();
-        let (mut starts, mut columns) = (Vec::with_capacity(n + 1), Vec::with_capacity(3 * n));
-        let (mut outside, mut others) = (Vec::new(), Vec::new());
-        starts.push(0);
-        for own in range.clone() {
-            others.clear();
-            for row in own * N..(own + 1) * N {
-                for other in (rows.row)(row).0.iter().map(|&j| j as usize / N) {
-                    if others.last() != Some(&other) {
-                        others.push(other);
-                    }
-                }
-            }
-            if N > 1 {
-                others.sort_unstable();
-                others.dedup();
-            }
-            for &other in &others {
-                if !range.contains(&other) {
-                    outside.push(((own - range.start) as u16, other as u32, [[0.0; N]; N]));
-                } else if other < own {
-                    columns.push((other - range.start) as u16);
-                }
-            }
-            starts.push(columns.len() as u32);
-        }
         let zero = [[0.0; N]; N];
-        let lower = vec![zero; columns.len()];
-        let (diagonal, inverses, fixed) = (vec![zero; n], vec![zero; n], vec![None; n]);
-        let added = Vec::new();
-        let mut chunk = Self { diagonal, added, inverses, fixed, starts, columns, lower, outside };
-        range.clone().for_each(|own| chunk.read_row(rows, own, range.start));
-        chunk.update_added();
+        let mut chunk = Self {
+            diagonal: vec![zero; n],
+            added: Vec::new(),
+            inverses: vec![zero; n],
+            fixed: vec![None; n],
+            starts: Vec::with_capacity(n + 1),
+            columns: Vec::with_capacity(3 * n),
+            lower: Vec::with_capacity(3 * n),
+            outside: Vec::new(),
+        };
+        chunk.starts.push(0);
+        let [mut blocks, mut transposed] = [Vec::new(), Vec::new()];
+        for (k, own) in range.clone().enumerate() {
+            let first = chunk.outside.len();
+            let work = [&mut blocks, &mut transposed];
+            rows.visit_stored((own, &range), work, |place, block| match place {
+                Place::Diagonal => chunk.diagonal[k] = block,
+                Place::Lower(column) => {
+                    chunk.columns.push(column);
+                    chunk.lower.push(block);
+                }
+                Place::Outside(column) => chunk.outside.push((k as u16, column, block)),
+            });
+            chunk.starts.push(chunk.columns.len() as u32);
+            chunk.update_added(k, first..chunk.outside.len());
+        }
         chunk
     }
 
-    /// Reads the entries of a row; the first row of the chunk is given.
-    fn read_row<T: Real>(&mut self, rows: ScaledRows<'_, T>, own: usize, first: usize) {
-        let k = own - first;
-        self.diagonal[k] = rows.block(own, own);
-        for at in self.starts[k] as usize..self.starts[k + 1] as usize {
-            self.lower[at] = rows.block(own, first + usize::from(self.columns[at]));
-        }
-        let start = self.first_outside(k);
-        let of_row = self.outside[start..].iter_mut().take_while(|entry| usize::from(entry.0) == k);
-        for (_, other, block) in of_row {
-            let other = *other as usize;
-            // of two symmetric blocks that in the later row is read, so that both rows store the same
-            *block = rows.block(own.max(other), own.min(other));
-            if other > own {
-                let transpose = *block;
-                *block = from_fn(|i| from_fn(|j| transpose[j][i]));
+    /// Reads row `own` anew; the range of the rows of the chunk is given.
+    fn replace_row<T: Real>(&mut self, rows: ScaledRows<'_, T>, own: usize, range: &Range<usize>) {
+        let k = own - range.start;
+        let first = self.first_outside(k);
+        let (mut lower, mut outside) = (self.starts[k] as usize, first);
+        let work = [&mut Vec::new(), &mut Vec::new()];
+        rows.visit_stored((own, range), work, |place, block| match place {
+            Place::Diagonal => self.diagonal[k] = block,
+            Place::Lower(_) => {
+                self.lower[lower] = block;
+                lower += 1;
             }
-        }
+            Place::Outside(_) => {
+                self.outside[outside].2 = block;
+                outside += 1;
+            }
+        });
+        self.update_added(k, first..outside);
+        self.fixed[k] = None;
     }
 
     /// The position of the first block outside of the chunk in row `k`, relative to the chunk, or after it.
@@ -186,21 +234,21 @@ impl<const N: usize> ChunkRows<N> {
         self.outside.partition_point(|entry| usize::from(entry.0) < k)
     }
 
-    /// Computes the diagonal `E`.
-    fn update_added(&mut self) {
-        self.added.clear();
+    /// Computes the entry of the diagonal `E` in a row with the entries `outside` of the chunk.
+    fn update_added(&mut self, k: usize, outside: Range<usize>) {
         if N > 1 {
             return;
         }
-        for of_row in self.outside.chunk_by(|one, other| one.0 == other.0) {
-            let k = usize::from(of_row[0].0);
-            let sum: f64 = of_row.iter().map(|entry| f64::from(entry.2[0][0].abs())).sum();
-            let diagonal = f64::from(self.diagonal[k][0][0]);
-            // sum and diagonal entry are equal up to rounding in some rows of second differences: no increase there
-            if sum > diagonal * (1.0 + 1e-4) {
-                self.added.resize(self.diagonal.len(), [0.0; N]);
-                self.added[k][0] = (0.5 * (MARGIN * sum - diagonal)) as f32;
-            }
+        let size = |entry: &(u16, u32, Block<N>)| f64::from(entry.2[0][0].abs());
+        let sum: f64 = self.outside[outside].iter().map(size).sum();
+        let diagonal = f64::from(self.diagonal[k][0][0]);
+        // sum and diagonal entry are equal up to rounding in some rows of second differences: no increase there
+        let is_exceeded = sum > diagonal * (1.0 + 1e-4);
+        if is_exceeded {
+            self.added.resize(self.diagonal.len(), [0.0; N]);
+        }
+        if let Some(added) = self.added.get_mut(k) {
+            added[0] = if is_exceeded { (0.5 * (MARGIN * sum - diagonal)) as f32 } else { 0.0 };
         }
     }
 
@@ -256,10 +304,8 @@ impl<T: Real, const N: usize> Smoother<T> for BlockGaussSeidel<N> {
         for of_chunk in replaced.chunk_by(|one, other| one / length == other / length) {
             let number = of_chunk[0] / length;
             let chunk = &mut self.chunks[number];
-            of_chunk.iter().for_each(|&own| chunk.read_row(rows, own, number * length));
-            chunk.update_added();
-            // what is added to the diagonal may have changed in any row
-            chunk.fixed.fill(None);
+            let range = number * length..number * length + chunk.diagonal.len();
+            of_chunk.iter().for_each(|&own| chunk.replace_row(rows, own, &range));
         }
     }
 
@@ -296,12 +342,12 @@ impl<T: Real, const N: usize> Smoother<T> for BlockGaussSeidel<N> {
                 chunk.lower_row(row).for_each(|(j, a)| subtract_product(a, &x[j], &mut sum));
                 let value = product(inverse, &sum);
                 x[row] = value;
-                let added = chunk.added.get(row).unwrap_or(&[0.0; N]);
-                // an unknown that is not smoothed has the value zero; residuals of fixed ones are set to zero below
-                let is_smoothed = |k: usize| inverse[k][k] != 0.0;
-                for k in 0..N {
-                    r[row][k] = if is_smoothed(k) { added[k] * value[k] } else { sum[k] };
-                }
+                // residuals of fixed unknowns are set to zero below
+                r[row] = match chunk.added.get(row) {
+                    _ if is_kept(inverse) => sum,
+                    Some(added) => from_fn(|k| added[k] * value[k]),
+                    None => [0.0; N],
+                };
                 chunk.lower_row(row).for_each(|(j, a)| subtract_transposed(a, &value, &mut r[j]));
             }
             0.0
@@ -343,11 +389,7 @@ impl<T: Real, const N: usize> Smoother<T> for BlockGaussSeidel<N> {
                     }
                 }
                 chunk.lower_row(row).for_each(|(j, a)| subtract_product(a, &x[j], &mut sum));
-                let mut value = product(inverse, &sum);
-                // the value of a fixed unknown is zero since the forward iteration
-                for k in 0..N {
-                    value[k] = if inverse[k][k] == 0.0 { x[row][k] } else { value[k] };
-                }
+                let value = if is_kept(inverse) { x[row] } else { product(inverse, &sum) };
                 x[row] = value;
                 chunk.lower_row(row).for_each(|(j, a)| subtract_transposed(a, &value, &mut r[j]));
             }
@@ -356,11 +398,17 @@ impl<T: Real, const N: usize> Smoother<T> for BlockGaussSeidel<N> {
     }
 }
 
+/// Whether a block is not smoothed: it is kept, or is a fixed unknown, whose value is zero.
+#[inline(always)]
+fn is_kept<const N: usize>(inverse: &Block<N>) -> bool {
+    N == 1 && inverse[0][0] == 0.0
+}
+
 /// `y = y - B x`.
 #[inline(always)]
 fn subtract_product<const N: usize>(block: &Block<N>, x: &[f32; N], y: &mut [f32; N]) {
     for (row, y) in block.iter().zip(y) {
-        let mut sum = 0.0;
+        let mut sum = ZERO;
         for j in 0..N {
             sum += row[j] * x[j];
         }
@@ -371,7 +419,7 @@ fn subtract_product<const N: usize>(block: &Block<N>, x: &[f32; N], y: &mut [f32
 /// `y = y - B^T x`.
 #[inline(always)]
 fn subtract_transposed<const N: usize>(block: &Block<N>, x: &[f32; N], y: &mut [f32; N]) {
-    let mut sum = [0.0; N];
+    let mut sum = [ZERO; N];
     for (row, &x) in block.iter().zip(x) {
         for j in 0..N {
             sum[j] += row[j] * x;
@@ -383,7 +431,7 @@ fn subtract_transposed<const N: usize>(block: &Block<N>, x: &[f32; N], y: &mut [
 /// `B x` for a symmetric block.
 #[inline(always)]
 fn product<const N: usize>(block: &Block<N>, x: &[f32; N]) -> [f32; N] {
-    let mut y = [0.0; N];
+    let mut y = [ZERO; N];
     for (column, &x) in block.iter().zip(x) {
         for j in 0..N {
             y[j] += column[j] * x;

@@ -181,7 +181,11 @@ impl<T: Real> MeanJumpSplitting<'_, T> {
         let opposite = |s: usize| states.get(penalties.opposite[s] as usize).copied();
         mixed_block.vertex_values = indices(n, |s| !is_free(s) && !fixed[s]);
         mixed_block.sides = indices(n, |s| is_free(s) && opposite(s) == Some(SideState::Mixed));
-        sides.is_pair = collect(n, |s| is_free(s) && opposite(s) == Some(SideState::Free));
+        for_each_chunk(&mut sides.is_pair, |range, is_pair| {
+            for (s, is_pair) in range.zip(is_pair) {
+                *is_pair = is_free(s) && opposite(s) == Some(SideState::Free);
+            }
+        });
         // the form of the corrected function with itself
         let form = |s: usize| match opposite(s) {
             _ if !is_free(s) => None,
@@ -192,8 +196,14 @@ impl<T: Real> MeanJumpSplitting<'_, T> {
             Some(_) => Some(diagonal[s]),
             None => penalties.has_jump(s).then(|| diagonal[s]),
         };
-        sides.inverse_jump = collect(n, |s| form(s).map_or(zero, |form| T::lit(1.0) / form));
-        match all(n, |s| form(s).is_none_or(|form| form > zero)) {
+        for_each_chunk(&mut sides.inverse_jump, |range, inverse_jump| {
+            for (s, inverse) in range.zip(inverse_jump) {
+                *inverse = form(s).map_or(zero, |form| T::lit(1.0) / form);
+            }
+        });
+        // the reciprocal of zero is infinite
+        let is_valid = |inverse: T| inverse >= zero && inverse.to_f64().is_finite();
+        match all(n, |s| is_valid(sides.inverse_jump[s])) {
             true => Ok(()),
             false => Err(FactorError::NotPositive),
         }

@@ -129,8 +129,8 @@ impl Prolongation {
     /// Sets the coarse residual to `P^T r` for the fine residual `r`, computed in the scalar of the residuals.
     pub(crate) fn restrict<S: Real>(&self, fine_residual: &[S], coarse_residual: &mut [S]) {
         for_each_chunk(coarse_residual, |range, out| {
-            for (j, out) in range.zip(out) {
-                *out = combination(self.coarse.row(j), fine_residual);
+            for (row, out) in self.coarse.rows(range).zip(out) {
+                *out = combination(row, fine_residual);
             }
         });
     }
@@ -143,9 +143,9 @@ impl Prolongation {
         fine_values: &mut [S],
     ) {
         for_each_chunk(fine_values, |range, out| {
-            for (i, x) in range.zip(out) {
+            for ((i, row), x) in range.clone().zip(self.fine.rows(range)).zip(out) {
                 if is_free(i) {
-                    *x += combination(self.fine.row(i), coarse_values);
+                    *x += combination(row, coarse_values);
                 }
             }
         });
