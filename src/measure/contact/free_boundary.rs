@@ -46,7 +46,10 @@ impl<const D: usize> Space<'_, D> {
                 let slack = SLACK * (high - low).norm().max(f64::MIN_POSITIVE);
                 let first = points.partition_point(|x| x[0] < low[0] - slack);
                 let near = points[first..].iter().take_while(|x| x[0] <= high[0] + slack);
-                let within = near.enumerate().filter(|(_, x)| self.covers(entity, x));
+                let is_near = |x: &Point<D>| {
+                    (1..D).all(|k| x[k] >= low[k] - slack && x[k] <= high[k] + slack)
+                };
+                let within = near.enumerate().filter(|(_, x)| is_near(x) && self.covers(entity, x));
                 found.extend(within.map(|(k, _)| first + k));
             }
             found
