@@ -13,7 +13,7 @@ use crate::error_bound::PrimalDualPair;
 use crate::error_bound::contact_forces::NodeForce;
 use crate::measure::Counts;
 use crate::mesh::{BoundaryCondition, HalfFacet, Neighbours};
-use crate::parallel::vectors::{collect, for_each_chunk, for_each_chunk_of_groups, largest};
+use crate::parallel::vectors::{collect, for_each_chunk, for_each_chunk_of_groups, largest, zeros};
 use crate::quadrature::Rule;
 use crate::real::Point;
 
@@ -115,7 +115,7 @@ impl<const D: usize> Space<'_, D> {
                 }
                 Ok(())
             });
-        let mut by_cell = vec![0.0; n_cells * n];
+        let mut by_cell = zeros(n_cells * n);
         for_each_chunk_of_groups(&mut by_cell, n, |range, by_cell| {
             for (cell, shares) in (range.start / n..).zip(by_cell.chunks_exact_mut(n)) {
                 // the volumes of cells without a share are not computed

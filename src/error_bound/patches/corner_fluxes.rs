@@ -3,6 +3,7 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::corners::Corner;
+use crate::parallel::vectors::collect;
 
 /// The fluxes of the corners of all cells, `per_corner` numbers each.
 pub(super) struct CornerFluxes {
@@ -15,8 +16,7 @@ pub(super) struct CornerFluxes {
 impl CornerFluxes {
     /// The fluxes of so many cells with so many corners each, none written yet.
     pub fn new(per_corner: usize, n_corners: usize, n_cells: usize) -> Self {
-        let mut bits = Vec::new();
-        bits.resize_with(n_cells * n_corners * per_corner, AtomicU64::default);
+        let bits = collect(n_cells * n_corners * per_corner, |_| AtomicU64::default());
         Self { per_corner, n_corners, bits }
     }
 
