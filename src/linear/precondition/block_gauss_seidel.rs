@@ -80,6 +80,9 @@ pub(crate) fn smoother<T: Real>(
 /// The entries of a matrix in the rows of one block and the columns of another.
 type Block<const N: usize> = [[f32; N]; N];
 
+/// Blocks of a row with their columns.
+type BlocksOfRow<const N: usize> = Vec<(usize, Block<N>)>;
+
 /// The block Gauss-Seidel smoother of a matrix with blocks of `N` unknowns.
 struct BlockGaussSeidel<const N: usize> {
     chunks: Vec<ChunkRows<N>>,
@@ -117,12 +120,13 @@ enum Place {
 }
 
 impl<T: Real> ScaledRows<'_, T> {
-    /// The blocks of a row that are asked for, by their columns: first those in which its first row has entries.
+    /// Reads the blocks of a row whose columns are asked for. Their order follows from the pattern alone: where all `N` rows
+    /// of the matrix have the same columns, these ascend.
     #[inline(always)]
     fn read<const N: usize>(
         &self,
         own: usize,
-        blocks: &mut Vec<(usize, Block<N>)>,
+        blocks: &mut BlocksOfRow<N>,
         is_asked: impl Fn(usize) -> bool,
     ) {
         blocks.clear();
@@ -135,7 +139,7 @@ impl<T: Real> ScaledRows<'_, T> {
                     continue;
                 }
                 if blocks.get(at).is_none_or(|block| block.0 != other) {
-                    // columns ascend, so that only the first row adds blocks if all have the same columns
+                    // a single row has each column once
                     let known =
                         if N == 1 { None } else { blocks.iter().position(|b| b.0 == other) };
                     at = known.unwrap_or(blocks.len());
@@ -152,7 +156,7 @@ impl<T: Real> ScaledRows<'_, T> {
     fn visit_stored<const N: usize>(
         &self,
         (own, range): (usize, &Range<usize>),
-        [blocks, transposed]: [&mut Vec<(usize, Block<N>)>; 2],
+        [blocks, transposed]: &mut [BlocksOfRow<N>; 2],
         mut visit: impl FnMut(Place, Block<N>),
     ) {
         self.read(own, blocks, |other| !(own + 1..range.end).contains(&other));
@@ -190,11 +194,10 @@ impl<const N: usize> ChunkRows<N> {
             outside: Vec::new(),
         };
         chunk.starts.push(0);
-        let [mut blocks, mut transposed] = [Vec::new(), Vec::new()];
+        let mut work = Default::default();
         for (k, own) in range.clone().enumerate() {
             let first = chunk.outside.len();
-            let work = [&mut blocks, &mut transposed];
-            rows.visit_stored((own, &range), work, |place, block| match place {
+            rows.visit_stored((own, &range), &mut work, |place, block| match place {
                 Place::Diagonal => chunk.diagonal[k] = block,
                 Place::Lower(column) => {
                     chunk.columns.push(column);
@@ -209,11 +212,15 @@ impl<const N: usize> ChunkRows<N> {
     }
 
     /// Reads row `own` anew; the range of the rows of the chunk is given.
-    fn replace_row<T: Real>(&mut self, rows: ScaledRows<'_, T>, own: usize, range: &Range<usize>) {
+    fn replace_row<T: Real>(
+        &mut self,
+        rows: ScaledRows<'_, T>,
+        (own, range): (usize, &Range<usize>),
+        work: &mut [BlocksOfRow<N>; 2],
+    ) {
         let k = own - range.start;
         let first = self.first_outside(k);
         let (mut lower, mut outside) = (self.starts[k] as usize, first);
-        let work = [&mut Vec::new(), &mut Vec::new()];
         rows.visit_stored((own, range), work, |place, block| match place {
             Place::Diagonal => self.diagonal[k] = block,
             Place::Lower(_) => {
@@ -301,11 +308,12 @@ impl<T: Real, const N: usize> Smoother<T> for BlockGaussSeidel<N> {
         }
         replaced.sort_unstable();
         replaced.dedup();
+        let mut work = Default::default();
         for of_chunk in replaced.chunk_by(|one, other| one / length == other / length) {
             let number = of_chunk[0] / length;
             let chunk = &mut self.chunks[number];
             let range = number * length..number * length + chunk.diagonal.len();
-            of_chunk.iter().for_each(|&own| chunk.replace_row(rows, own, &range));
+            of_chunk.iter().for_each(|&own| chunk.replace_row(rows, (own, &range), &mut work));
         }
     }
 
