@@ -257,10 +257,10 @@ impl<const D: usize> Discretisation<'_, D> {
             false => space.node_numbers(&pair.edges),
         };
         let states = (found.bounds, found.contact);
-        let mut loads = space.cell_loads(u, of_solver, states, forces, numbers)?;
+        let loads = space.cell_loads(u, of_solver, states, forces, numbers)?;
         let known = match has_facet_fluxes {
             true => None,
-            false => Some(space.known_cells((u, &pair), neighbours, &mut loads)),
+            false => Some(space.known_cells(u, &pair)),
         };
         let tested = |cell: usize, own: usize| loads.multiplier_at(cell, own);
         let largest = largest(space.mesh.n_cells(), |cell| loads.strength(cell));

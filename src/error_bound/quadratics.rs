@@ -18,7 +18,6 @@ use std::ops::Range;
 use super::NoBound;
 use super::contact_forces::NodeForce;
 use super::flux::Flux;
-use super::shared_multipliers::SharedNodes;
 use crate::algebra::{Bound, Contact};
 use crate::arrays::{array_of, map_entries};
 use crate::assemble::space::Space;
@@ -47,8 +46,6 @@ pub(super) struct CellLoads {
     pub contact: Vec<(HalfFacet, Products)>,
     /// By unknown of a cell its functional at `lambda_a lambda_j`.
     pub functionals: Vec<Products>,
-    /// The nodes whose multipliers cells share.
-    pub shared: Option<SharedNodes>,
 }
 
 impl CellLoads {
@@ -118,18 +115,17 @@ impl<const D: usize> Space<'_, D> {
         (0..multipliers.len()).filter(|&i| is_pinned(i)).for_each(|i| multipliers[i] = 0.0);
         let given = self.loads_less_reaction(u)?;
         let mut values = given.clone();
-        let shared = match numbers {
+        match numbers {
             Some(numbers) => {
                 let states = (bounds, contact, obstacles);
-                Some(self.add_multipliers(&multipliers, states, numbers, &mut values))
+                self.add_multipliers(&multipliers, states, &numbers, &mut values);
             }
             None => {
                 for (k, value) in values.iter_mut().enumerate() {
                     *value += multipliers[self.dofs.of(k / n, k % n)];
                 }
-                None
             }
-        };
+        }
         let terms = self.node_terms(&self.facet_rule);
         let functional = |terms: &Vec<([f64; 4], f64)>| -> Products {
             array_of(|a| array_of(|j| terms.iter().map(|(p, w)| w * p[a] * p[j]).sum()))
@@ -137,7 +133,7 @@ impl<const D: usize> Space<'_, D> {
         let functionals: Vec<Products> = terms.iter().map(functional).collect();
         let neumann = self.neumann_products(u)?;
         let contact = contact_products(forces, &functionals);
-        Ok(CellLoads { values, given, neumann, contact, functionals, shared })
+        Ok(CellLoads { values, given, neumann, contact, functionals })
     }
 
     /// The load less the reaction term of a discrete function, by cell and unknown.

@@ -6,15 +6,6 @@
 use crate::algebra::{Bound, Contact};
 use crate::assemble::space::Space;
 use crate::assemble::space::active_obstacles::ActiveObstacles;
-use crate::mesh::BoundaryCondition;
-
-/// The nodes of quadratics that cells share.
-pub(super) struct SharedNodes {
-    /// By cell and unknown of the cell the number of the node.
-    pub numbers: Vec<u32>,
-    /// For each node whether it lies inside the domain and is in contact with all other nodes of the cells around.
-    pub surrounded: Vec<bool>,
-}
 
 impl<const D: usize> Space<'_, D> {
     /// The numbers of the nodes of quadratics, by cell and unknown of the cell: of broken functions those of vertices
@@ -41,9 +32,9 @@ impl<const D: usize> Space<'_, D> {
         &self,
         multipliers: &[f64],
         (bounds, contact, obstacles): (&[Bound<f64>], &[Contact], &ActiveObstacles),
-        numbers: Vec<u32>,
+        numbers: &[u32],
         values: &mut [f64],
-    ) -> SharedNodes {
+    ) {
         let n = self.per_cell();
         let volume = |cell: usize| self.mesh.geometry(cell).volume;
         let held: Vec<bool> = self.cells_in_contact(bounds, contact);
@@ -60,7 +51,6 @@ impl<const D: usize> Space<'_, D> {
             false => 0,
         };
         let mut sums = vec![0.0; n_nodes];
-        let mut surrounded = vec![contact.len() == bounds.len(); n_nodes];
         for (cell, nodes) in numbers.chunks_exact(n).enumerate() {
             let volume = volume(cell);
             for (i, &node) in nodes.iter().enumerate() {
@@ -69,14 +59,6 @@ impl<const D: usize> Space<'_, D> {
                 // a shared unknown has one multiplier
                 let before = if self.broken { sums[node] } else { 0.0 };
                 sums[node] = before + multipliers[unknown];
-                surrounded[node] &= rank(cell, i) == 2 && bounds[unknown].is_inequality();
-            }
-        }
-        for f in self.mesh.boundary() {
-            if self.broken || f.condition != BoundaryCondition::Dirichlet {
-                for i in self.nodes_on(usize::from(f.local)) {
-                    surrounded[numbers[f.cell as usize * n + i] as usize] = false;
-                }
             }
         }
         let of_cells = numbers.chunks_exact(n).zip(values.chunks_exact_mut(n));
@@ -90,7 +72,6 @@ impl<const D: usize> Space<'_, D> {
                 }
             }
         }
-        SharedNodes { numbers, surrounded }
     }
 
     /// For each cell whether no bounded unknown with a basis function of positive mean is free.

@@ -24,8 +24,7 @@ use crate::error_bound::PrimalDualPair;
 use crate::error_bound::quadratics::{
     CellLoads, Products, add, densities, products_on_facet, triple, vertices_of,
 };
-use crate::error_bound::shared_multipliers::SharedNodes;
-use crate::mesh::{HalfFacet, Neighbour, Neighbours, edge_vertices};
+use crate::mesh::HalfFacet;
 use crate::parallel::cells;
 use crate::real::Point;
 
@@ -66,26 +65,20 @@ pub(super) fn on_facet<const D: usize>(densities: &[f64; 4], facet: usize) -> [f
 }
 
 impl<const D: usize> Space<'_, D> {
-    /// What is known of the cells of a conforming quadratic function, without divergences. Divides the multipliers of
-    /// shared unknowns among their cells in `loads`.
+    /// What is known of the cells of a conforming quadratic function, without divergences.
     pub(in crate::error_bound) fn known_cells(
         &self,
-        (u, function): (&[f64], &PrimalDualPair<D>),
-        neighbours: &Neighbours,
-        loads: &mut CellLoads,
+        u: &[f64],
+        function: &PrimalDualPair<D>,
     ) -> Vec<KnownOfCell> {
         let corners: Vec<BasisAt> =
             (0..D + 1).map(|k| self.basis_at(&Node::vertex(k).centre(D))).collect();
-        let (table, n_cells) = (self.stiffness_table(), self.mesh.n_cells());
-        let data = cells::map(n_cells, &|cells: Range<usize>| {
+        let table = self.stiffness_table();
+        let data = cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
             let in_cell = |cell| self.known_of_cell(cell, (u, function), (&corners, &table));
             cells.map(in_cell).collect::<Vec<_>>()
         });
-        let data: Vec<KnownOfCell> = data.into_iter().flatten().collect();
-        if let Some(shared) = loads.shared.as_ref().filter(|s| s.surrounded.contains(&true)) {
-            self.divide_multipliers(&data, neighbours, shared, &mut loads.values);
-        }
-        data
+        data.into_iter().flatten().collect()
     }
 
     /// The cells of a conforming quadratic function, with the forces of obstacles on facets if there are any.
@@ -123,55 +116,6 @@ impl<const D: usize> Space<'_, D> {
         let mut given: Vec<_> = loads.neumann.iter().chain(&loads.contact).collect();
         sort(&mut given);
         QuadraticCells { space: self, cells: data, given, pressing }
-    }
-
-    /// Divides the multipliers of unknowns amid contact among their cells as the mean of the two fluxes
-    /// through each facet balances them, since the function is there as smooth as the obstacle.
-    fn divide_multipliers(
-        &self,
-        data: &[KnownOfCell],
-        neighbours: &Neighbours,
-        shared: &SharedNodes,
-        values: &mut [f64],
-    ) {
-        let n = self.per_cell();
-        // basis functions in products of barycentric coordinates: `square l_a^2 - own l_a` and `edge l_a l_b`
-        let [square, own, edge] =
-            if self.has_coefficients() { [1.0, 0.0, 2.0] } else { [2.0, 1.0, 4.0] };
-        let is_surrounded = |k: usize| shared.surrounded[shared.numbers[k] as usize];
-        let fill = |cells: Range<usize>, out: &mut [f64]| {
-            for (cell, out) in cells.zip(out.chunks_exact_mut(n)) {
-                if !(0..n).any(|i| is_surrounded(cell * n + i)) {
-                    continue;
-                }
-                let mut balance = data[cell].stiffness;
-                for facet in 0..=D {
-                    let mut flux = data[cell].normal[facet];
-                    if let Neighbour::Cell { cell: other, local } = neighbours.across(cell, facet) {
-                        let local = usize::from(local);
-                        let normal_there = &data[other as usize].normal[local];
-                        let pairs = vertices_of::<D>(facet).zip(vertices_of::<D>(local));
-                        pairs
-                            .for_each(|(j, there)| flux[j] = 0.5 * (flux[j] - normal_there[there]));
-                    }
-                    let products = products_on_facet::<D>(&flux, facet);
-                    for a in 0..=D {
-                        let hat: f64 = products[a].iter().sum();
-                        balance[a] -= square * products[a][a] - own * hat;
-                    }
-                    for (balance, &[a, b]) in balance[D + 1..].iter_mut().zip(edge_vertices(D)) {
-                        *balance -= edge * products[a][b];
-                    }
-                }
-                for (i, out) in out.iter_mut().enumerate() {
-                    if is_surrounded(cell * n + i) {
-                        *out = balance[i];
-                    }
-                }
-            }
-            Ok::<(), Infallible>(())
-        };
-        let Ok(()) = cells::for_each(self.mesh.n_cells(), &|c| c * n, values, &fill);
     }
 
     /// The data of a cell, without divergence.
