@@ -16,8 +16,6 @@ use crate::quadrature::facet_to_cell;
 pub struct Fields {
     /// The solution at the vertices of each cell.
     pub u: Vec<f64>,
-    /// The obstacle at the vertices of each cell.
-    pub obstacle: Option<Vec<f64>>,
     /// Density of an obstacle's multiplier in each cell: the mean over the vertices of the cell of the
     /// nodal multipliers of the unknowns to which the obstacle of its region gives the active bound, gathered at
     /// vertices, over the integrals of hat functions. Its integral over the domain is the sum of these multipliers.
@@ -28,7 +26,7 @@ pub struct Fields {
     /// A solution that is not linear on cells, at the midpoints of each cell's edges; empty for a
     /// linear one.
     pub midpoints: Vec<f64>,
-    /// The discrete contact set, and the multiplier's density at vertices.
+    /// The discrete contact set.
     pub discrete_contact: DiscreteContact,
     /// The facets of the contact boundary and those with friction: cell, and number in the cell.
     pub contact_boundary: Vec<HalfFacet>,
@@ -52,7 +50,7 @@ impl Fields {
 }
 
 impl<const D: usize> Discretisation<'_, D> {
-    /// Solution, obstacle, multiplier and contact set on cells, for pictures.
+    /// Solution, multiplier and contact set on cells, for pictures.
     pub fn fields(&self, inequality: &Inequality<f64>, solution: &Solution<f64>) -> Fields {
         self.demand_length(&solution.values);
         compiled!(const D: fn(&Discretisation<'_, D>, &Inequality<f64>, &Solution<f64>) -> Fields
@@ -66,16 +64,6 @@ impl<const D: usize> Space<'_, D> {
     fn fields(&self, solved: SolvedInequality<'_>) -> Fields {
         let (inequality, solution) = solved;
         let u = &solution.values;
-        let corner = |&v: &u32| self.mesh.vertices()[v as usize];
-        let mut obstacle = Vec::new();
-        for cell in (0..self.mesh.n_cells()).filter(|_| self.problem.has_obstacle()) {
-            let region = self.mesh.region(cell);
-            let psi = self.data.lower.of(region).or(self.data.upper.of(region));
-            for v in self.mesh.cell(cell) {
-                let value = psi.map_or(f64::NAN, |psi| self.at(psi, cell, &corner(v)));
-                obstacle.push(value + self.body_constants.of_cell(cell));
-            }
-        }
         let share = |cell| {
             let unknowns = (0..self.per_cell()).map(|i| self.dofs.of(cell, i));
             let constrained = unknowns.filter(|&k| inequality.bounds[k].is_inequality());
@@ -96,7 +84,6 @@ impl<const D: usize> Space<'_, D> {
         let on_boundary = multipliers.as_ref().filter(|_| self.problem.acts_on_boundary());
         Fields {
             u: self.vertex_values(u),
-            obstacle: self.problem.has_obstacle().then_some(obstacle),
             multiplier: match of_obstacles {
                 Some(of) => self.densities_of_obstacles(inequality, of),
                 None if self.problem.has_obstacle() => vec![f64::NAN; n_cells],
